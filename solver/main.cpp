@@ -173,11 +173,11 @@ void solve(int argc, char** argv, Comm& comm) {
   options.between_steps = [&](const StepsSoFar& so_far, const auto& keep) { return checkpoints.between_steps(so_far, keep); };
   note_signals();
   std::vector<QuantityValue> asked;
-  options.more = [&]() -> std::vector<std::pair<std::string, std::string>> {
-    if (scene.entries("quantity").empty()) return {};
+  options.more = [&](Json& run) {
+    if (scene.entries("quantity").empty()) return;
     RunFile file(o.output);
     asked = quantities(scene, file);
-    return {{"quantities", quantity_table(asked).json()}};
+    run.add("quantities", quantity_table(asked).json());
   };
   const RunReport report = [&] {
     try {

@@ -10,6 +10,7 @@
 #include "about.hpp"
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/param.hpp"
 #include "import/imported.hpp"
 #include "model/inputs.hpp"
@@ -121,8 +122,10 @@ void write_face(Request& r, bool order_given) {
   write_text_file(r.output, text);
   if (is_quiet() && !r.json) return;
   if (r.json)
-    fmt::print("{{\"cells\": {}, \"A\": {}, \"I1\": {}, \"I2\": {}, \"I12\": {}, \"J\": {}, \"s1\": {}, \"s2\": {}}}\n", mesh.cells.size(),
-               a.A, a.I1, a.I2, a.I12, a.J, a.s1, a.s2);
+    fmt::print(
+        "{}\n",
+        Json{{"cells", mesh.cells.size()}, {"A", a.A}, {"I1", a.I1}, {"I2", a.I2}, {"I12", a.I12}, {"J", a.J}, {"s1", a.s1}, {"s2", a.s2}}
+            .text());
   else
     fmt::print("{} cells; A {:.6g}, I1 {:.6g}, I2 {:.6g}, I12 {:.6g}, J {:.6g}, shear centre ({:.6g}, {:.6g}) from the centre of area\n",
                mesh.cells.size(), a.A, a.I1, a.I2, a.I12, a.J, a.s1, a.s2);

@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
     if (table) {
       const Table t = comparison(graph, file.mesh, n_parts ? n_parts : 128);
       if (!output.empty()) write_text_file(output, csv(t));
-      if (json || output.empty() || !is_quiet()) fmt::print("{}", json ? t.json() + "\n" : t.text());
+      if (json || output.empty() || !is_quiet()) fmt::print("{}", json ? t.json().text() + "\n" : t.text());
       return;
     }
     Division division{weights, {}, {}, {}};

@@ -175,7 +175,7 @@ void run(const AtOptions& o) {
     auto& row = table.rows.emplace_back();
     for (const auto& column : columns) row.push_back(std::isfinite(column[i]) ? fmt::format("{}", column[i]) : "-");
   }
-  write_out("-", o.json ? table.json("") + "\n" : table.text());
+  write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ void overview(const BeamOptions& o, const RunFile& run) {
     for (const double x : {most.high, most.low, most.von_mises, s, t}) row.push_back(b.has_face() ? fmt::format("{:.6g}", x) : "-");
     table.rows.push_back(row);
   }
-  write_out("-", o.json ? table.json("") + "\n" : table.text());
+  write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }
 
 /// The numbers of the section of every beam; of a taper those of each section.
@@ -128,7 +128,7 @@ void sections(const BeamOptions& o, const RunFile& run) {
         row.push_back(b.section(k).area ? fmt::format("{:.6g}", x) : "-");
     }
   }
-  write_out("-", o.json ? table.json("") + "\n" : table.text());
+  write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }
 
 /// BeamCurves over s: those of a time, or the least and the largest of all steps.
@@ -226,7 +226,7 @@ void run(const BeamOptions& o) {
     auto& row = table.rows.emplace_back(std::vector<std::string>{p.beam->name, fmt::format("{}.{}", p.cell, p.end == 0 ? "a" : "b")});
     for (const auto& column : columns) row.push_back(std::isfinite(column[i]) ? fmt::format("{}", column[i]) : "-");
   }
-  write_out("-", o.json ? table.json("") + "\n" : table.text());
+  write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }
 
 }  // namespace

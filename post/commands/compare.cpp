@@ -138,7 +138,7 @@ void run(const CompareOptions& o) {
     }
   }
   if (table.rows.empty()) throw Error(first.path, "has no column in common with all the others");
-  write_out("-", o.json ? table.json("") + "\n" : table.text());
+  write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }
 
 }  // namespace

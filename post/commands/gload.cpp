@@ -82,7 +82,7 @@ std::string sensor_table(const GloadOptions& o, const std::vector<SensorRecord>&
     row.push_back(s.peak[3].band > 0 ? fmt::format("{:.2f}", s.peak[3].above) : "-");
     table.rows.push_back(row);
   }
-  return o.json ? table.json("") + "\n" : table.text();
+  return o.json ? table.json().text() + "\n" : table.text();
 }
 
 void run(const GloadOptions& o) {

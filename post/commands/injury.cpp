@@ -79,7 +79,8 @@ void run(const InjuryOptions& o) {
   if (!o.page.empty()) write_report(crew, o.cfc, corridor, file.title, file.path, o.page);
   if (!o.eiband.empty()) write_eiband(crew, o.cfc, file.title, o.eiband);
   const bool in_files = !o.csv.empty() || !o.page.empty() || !o.eiband.empty();
-  if (o.csv != "-" && (o.json || !in_files || !is_quiet())) write_out("-", o.json ? table_of(crew, false).json("") + "\n" : text_of(crew));
+  if (o.csv != "-" && (o.json || !in_files || !is_quiet()))
+    write_out("-", o.json ? table_of(crew, false).json().text() + "\n" : text_of(crew));
   warn_of_band(file.records, o.cfc);
   if (!is_quiet() && !o.json)
     fmt::print(stderr,

@@ -109,7 +109,7 @@ void run(const MeshOptions& o) {
   picture.write(o.output);
   if (o.faces) {
     const Table table = table_of_faces(mesh, faces);
-    if (o.json || !is_quiet()) write_out("-", o.json ? table.json("") + "\n" : table.text());
+    if (o.json || !is_quiet()) write_out("-", o.json ? table.json().text() + "\n" : table.text());
     if (!unseen.empty() && !is_quiet()) fmt::print(stderr, "not seen from here: {}; --camera looks from elsewhere\n", unseen);
   } else if (!is_quiet())
     fmt::print("{}\n", o.output);

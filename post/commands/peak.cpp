@@ -70,7 +70,7 @@ void run(const PeakOptions& o) {
   }
   if (table.rows.empty())
     throw Error(run.path, fmt::format("all regions asked for are rigid: they have no {}", field.label), "try --field acceleration");
-  write_out("-", o.json ? table.json("") + "\n" : table.text());
+  write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ void run(const QuantityOptions& o) {
   for (const QuantityValue& v : shown)
     if (!v.why.empty()) warn("", v.why);
   const Table table = quantity_table(shown);
-  write_out("-", o.json ? table.json("") + "\n" : table.text());
+  write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ void list(const SeriesOptions& o, const RunFile& run) {
                               (many ? fmt::format(" ... {}, {} in all", s.column.back(), s.column.size()) : ""),
                           fmt::format("{}", fmt::join(units, ", "))});
   }
-  write_out("-", o.json ? table.json("") + "\n" : table.text());
+  write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }
 
 /// Of peaks of forces and accelerations that say more of step and mesh than of the scene, beside what their history has in the same unit.

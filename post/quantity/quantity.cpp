@@ -117,6 +117,8 @@ void evaluate(const Entry& q, RunFile& run, QuantityValue& v) {
   }
   const Column c = history_of(q, run);
   v.of = c.label, v.unit = c.unit;
+  if (q.has("stress")) v.measured = Measured::stress;
+  if (q.has("sensor") && !q.has("cfc")) v.measured = Measured::raw_acceleration;
   for (size_t i = 0; i < c.value.size(); ++i)
     if (!std::isfinite(c.value[i])) throw Error(q.place.text(), fmt::format("its value is not a number at t = {:.6g} s", c.t[i]));
   if (c.t.size() < 2) throw Error(q.place.text(), "it has one value in this run, not a history in time");

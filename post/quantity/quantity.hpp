@@ -9,12 +9,16 @@
 
 namespace hilo {
 
+/// What a history is of, where that decides what to advise.
+enum class Measured { other, raw_acceleration, stress };
+
 struct QuantityValue {
   std::string name, kind, of, unit;                                    // "hinge force", "peak", "joint hinge: force", "N"
   double value = std::numeric_limits<double>::quiet_NaN(), t = value;  // t: of a peak or a value at a time  [s]
   std::string tolerance;                                               // as written
   double allowed = std::numeric_limits<double>::quiet_NaN();           // [unit]
-  std::string why;                                                     // it has no value
+  Measured measured = Measured::other;
+  std::string why;  // it has no value
 };
 
 /// What a quantity of kind peak, at or rms is taken of.  Error where this run does not have it.

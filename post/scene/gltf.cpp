@@ -257,7 +257,7 @@ class Writer {
     for (size_t k = 1; k <= nodes_.size(); ++k) children.push_back(k);
     const std::string field = is_named_field(o_.field) ? fmt::format(R"({{"field":"{}"}})", o_.field)
                                                        : fmt::format(R"({{"field":"{}","unit":"{}","low":{},"high":{}}})", o_.field,
-                                                                     field_.unit, json_number(low_), json_number(high_));
+                                                                     field_.unit, Json(low_).text(), Json(high_).text());
     const double half = std::sqrt(0.5);
     std::string out = fmt::format(
         R"({{"asset":{{"version":"2.0","generator":"hilo-post"}},"scene":0,"scenes":[{{"name":{0},"nodes":[0],"extras":{1}}}],)"

@@ -24,25 +24,6 @@ size_t width(const std::string& text) {
 
 }  // namespace
 
-std::string json_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      out += '\\', out += c;
-    else if (c == '\n')
-      out += "\\n";
-    else if (c == '\t')
-      out += "\\t";
-    else if (static_cast<unsigned char>(c) < 0x20)
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-    else
-      out += c;
-  }
-  return out + '"';
-}
-
-std::string json_number(double x) { return std::isfinite(x) ? fmt::format("{}", x) : "null"; }
-
 std::string Table::text() const {
   if (rows.empty()) return "";
   std::vector<std::vector<std::string>> shown = rows;
@@ -73,21 +54,18 @@ std::string Table::text() const {
   return out;
 }
 
-std::string Table::json(std::string_view indent) const {
-  std::string out = "[";
-  for (size_t i = 0; i < rows.size(); ++i) {
-    out += fmt::format("{}\n{}  {{", i ? "," : "", indent);
-    for (size_t j = 0; j < header.size(); ++j) {
-      const std::string& cell = rows[i][j];
-      out += fmt::format("{}{}: {}", j ? ", " : "", json_text(header[j]),
-                         j < n_text        ? json_text(cell)
-                         : is_number(cell) ? cell
-                         : cell == "-"     ? "null"
-                                           : json_text(cell));
-    }
-    out += "}";
-  }
-  return out + (rows.empty() ? "]" : fmt::format("\n{}]", indent));
+Json Table::json() const {
+  return Json::list_of(
+      rows,
+      [this](const std::vector<std::string>& row) {
+        Json out = Json::object();
+        for (size_t j = 0; j < header.size(); ++j)
+          out.add(header[j], j >= n_text && is_number(row[j]) ? Json::number(row[j])
+                             : j >= n_text && row[j] == "-"   ? Json(nullptr)
+                                                              : Json(row[j]));
+        return out;
+      },
+      Json::In::lines);
 }
 
 }  // namespace hilo

@@ -2,15 +2,11 @@
 // A table on stdout, aligned for people or as JSON for programs.
 #pragma once
 #include <string>
-#include <string_view>
 #include <vector>
 
-namespace hilo {
+#include "base/json.hpp"
 
-/// Text as a JSON string, quotes included.
-std::string json_text(std::string_view text);
-/// A number as JSON; null for what is not finite.
-std::string json_number(double x);
+namespace hilo {
 
 /// Rows of cells under a header.  Columns of numbers are set to the right, and are numbers in JSON ("-" is null there).
 struct Table {
@@ -21,7 +17,7 @@ struct Table {
   /// Lines "name   cells"; an empty table prints nothing.
   std::string text() const;
   /// [{"name": "hull", "cells": 12}, ...]
-  std::string json(std::string_view indent = "  ") const;
+  Json json() const;
 };
 
 }  // namespace hilo

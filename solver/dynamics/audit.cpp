@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/table.hpp"
-
 namespace hilo {
 namespace {
 
@@ -34,8 +32,6 @@ double largest_force(const System& system, const State& s) {
   system.evaluate(stage, std::vector<double>(3 * static_cast<size_t>(system.n_joint_blocks())), r, nullptr);
   return system.comm->max(r.force_scale);
 }
-
-std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : "null"; }
 
 }  // namespace
 
@@ -137,32 +133,43 @@ std::string Audit::verdict() const {
 
 double Audit::balance() const { return moving_ > rounding_ ? largest_ / moving_ : std::nan(""); }
 
-std::string Audit::json(const std::string& failure) const {
-  const auto joint = [&](int block) {  // the name of a joint; of other rows what they belong to
-    const std::string who = system_.row_owner(block), prefix = "joint \"";
-    return who.empty() ? "null" : json_text(who.starts_with(prefix) ? who.substr(prefix.size(), who.size() - prefix.size() - 1) : who);
+Json Audit::json(const std::string& failure) const {
+  const auto joint = [&](int block) -> Json {  // the name of a joint; of other rows what they belong to
+    for (const auto& c : system_.constraints())
+      if (3 * block >= c->row() && 3 * block < c->row() + c->n_padded()) return c->name();
+    const std::string who = system_.row_owner(block);
+    return who.empty() ? Json(nullptr) : who;
   };
-  std::string out = fmt::format("{{\n    \"passed\": {},\n", failure.empty());
-  if (!failure.empty()) out += fmt::format("    \"failed\": {},\n", json_text(failure));
-  out += energy_unchecked_.empty() ? fmt::format(
-                                         "    \"energy\": {{\"step\": {}, \"step_t\": {}, \"sum\": {}, \"sum_t\": {}, \"bound\": {}, "
-                                         "\"newton\": {}, \"newton_t\": {}, \"newton_bound\": "
-                                         "{}}},\n",
-                                         number(worst_.step), number(worst_.step_t), number(worst_.sum), number(worst_.sum_t),
-                                         number(energy_bound_), number(worst_.left.part), number(worst_.left.t), number(left_bound_))
-                                   : fmt::format("    \"energy\": {},\n", json_text("not checked: " + energy_unchecked_));
+  const auto number = [](double x) { return Json(x, 6); };
+  Json out = Json::object(Json::In::lines);
+  out.add("passed", failure.empty());
+  if (!failure.empty()) out.add("failed", failure);
+  if (energy_unchecked_.empty())
+    out.add("energy", {{"step", number(worst_.step)},
+                       {"step_t", number(worst_.step_t)},
+                       {"sum", number(worst_.sum)},
+                       {"sum_t", number(worst_.sum_t)},
+                       {"bound", number(energy_bound_)},
+                       {"newton", number(worst_.left.part)},
+                       {"newton_t", number(worst_.left.t)},
+                       {"newton_bound", number(left_bound_)}});
+  else
+    out.add("energy", "not checked: " + energy_unchecked_);
   const auto rows = [&](const char* key, double worst, int by, double t) {
-    out += fmt::format("    \"{}\": {{\"worst\": {}, \"joint\": {}, \"t\": {}, \"bound\": {}}},\n", key, number(worst), joint(by),
-                       number(t), number(row_bound_ * system_.length));
+    out.add(key, {{"worst", number(worst)}, {"joint", joint(by)}, {"t", number(t)}, {"bound", number(row_bound_ * system_.length)}});
   };
   rows("joint_rows", worst_.rows.kept, worst_.rows.kept_block, worst_.kept_t);
   rows("dropped_rows", worst_.rows.dropped, worst_.rows.dropped_block, worst_.dropped_t);
-  out += fmt::format("    \"turn\": {{\"largest\": {}, \"of\": {}, \"t\": {}, \"bound\": {}}},\n", number(worst_.turn.angle),
-                     worst_.turn.angle > 0 ? json_text(system_.name(worst_.turn)) : "null", number(worst_.turn_t), number(turn_limit));
+  out.add("turn", {{"largest", number(worst_.turn.angle)},
+                   {"of", worst_.turn.angle > 0 ? Json(system_.name(worst_.turn)) : nullptr},
+                   {"t", number(worst_.turn_t)},
+                   {"bound", number(turn_limit)}});
   const auto& [det, region] = worst_.det;
-  out += fmt::format("    \"det_F\": {{\"least\": {}, \"region\": {}, \"t\": {}}},\n", region >= 0 ? number(det) : "null",
-                     region >= 0 ? json_text(system_.mesh->mesh.region_name[region]) : "null", number(worst_.det_t));
-  return out + "    \"finite\": true\n  }";
+  out.add("det_F", {{"least", region >= 0 ? number(det) : nullptr},
+                    {"region", region >= 0 ? Json(system_.mesh->mesh.region_name[region]) : nullptr},
+                    {"t", number(worst_.det_t)}});
+  out.add("finite", true);
+  return out;
 }
 
 }  // namespace hilo

@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 
+#include "base/json.hpp"
 #include "dynamics/integrator.hpp"
 
 namespace hilo {
@@ -52,7 +53,7 @@ class Audit {
   double violation() const { return worst_.rows.worst(); }
   double least_det() const { return worst_.det.det; }
   /// The verdict as a JSON object; `failure`: why the run stopped, or "".
-  std::string json(const std::string& failure) const;
+  Json json(const std::string& failure) const;
   void archive(Archive& a) {
     a("audit", t_, E0_, start_, rounding_, moving_, n_steps_, largest_, unexplained_, gaps_, now_, sums_, worst_, opens_dropped_row_);
   }

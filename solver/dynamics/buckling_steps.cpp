@@ -203,11 +203,13 @@ class Loaded {
   double way_ = 0, share_ = 1;  // of the first displacement [m]; of the loads, between states whose stiffness is compared
 };
 
-std::string as_json(const std::vector<FoundShape>& shapes) {
-  std::string out;
-  for (const FoundShape& s : shapes)
-    out += fmt::format("{}\n    {{\"factor\": {:.12g}, \"error\": {:.3g}}}", out.empty() ? "" : ",", s.figures.factor, s.figures.error);
-  return "[" + out + "\n  ]";
+Json as_json(const std::vector<FoundShape>& shapes) {
+  return Json::list_of(
+      shapes,
+      [](const FoundShape& s) -> Json {
+        return {{"factor", {s.figures.factor, 12}}, {"error", {s.figures.error, 3}}};
+      },
+      Json::In::lines);
 }
 std::string as_table(const std::vector<FoundShape>& shapes) {
   std::string out = "shape  factor of the loads\n";
@@ -261,7 +263,7 @@ class BucklingSteps final : public Steps {
       throw Error(where, "nothing buckles under these loads",
                   "linear regions stay straight without stiffening = true; tension alone buckles nothing");
     for (const FoundShape& s : shapes) record(s);
-    run_.figures.buckling = as_json(shapes);
+    run_.figures.lists.emplace_back("load_factors", as_json(shapes));
     run_.report.table = as_table(shapes);
     run_.report.t = static_cast<double>(shapes.size());
     for (const FoundShape& s : shapes)

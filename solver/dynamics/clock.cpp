@@ -8,7 +8,7 @@ namespace hilo {
 
 std::vector<std::vector<int>> mechanisms_of_one_freedom(const System& s) {
   const auto n = static_cast<int>(s.bodies.size());
-  Ties ties(n);
+  Ties ties(s.bodies.size());
   for (const Equations* part : s.all<Equations>()) part->tie(ties);
   s.comm->sum(ties.excluded());  // cells are on their ranks alone
   std::vector<std::vector<int>> groups(n);

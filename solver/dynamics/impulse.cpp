@@ -41,6 +41,6 @@ Impulse Impulses::strike(const System& system, KktSolver& solver, State& s, bool
   return impulse;
 }
 
-std::string Impulses::json() const { return fmt::format("{{\"count\": {}, \"work\": {:.6g}}}", count_, work_); }
+Json Impulses::json() const { return {{"count", count_}, {"work", {work_, 6}}}; }
 
 }  // namespace hilo

@@ -25,7 +25,7 @@ Impulse strike(const System& system, KktSolver& solver, State& s);
 class Impulses {
  public:
   Impulse strike(const System& system, KktSolver& solver, State& s, bool talk);
-  std::string json() const;
+  Json json() const;
   void archive(Archive& a) { a("impulses", count_, work_); }
 
  private:

@@ -16,16 +16,19 @@ namespace hilo {
 namespace {
 
 /// What the modes say in run.json, and on the screen.
-std::string as_json(const std::vector<FoundMode>& modes) {
-  std::string out;
-  for (const FoundMode& m : modes) {
-    const NaturalMode& f = m.figures;
-    out += fmt::format(
-        "{}\n    {{\"frequency\": {:.12g}, \"damping\": {:.6g}, \"mass\": [{:.6g}, {:.6g}, {:.6g}], \"inertia\": [{:.6g}, {:.6g}, {:.6g}], "
-        "\"error\": {:.3g}}}",
-        out.empty() ? "" : ",", f.frequency(), f.damping, f.mass[0], f.mass[1], f.mass[2], f.mass[3], f.mass[4], f.mass[5], f.error);
-  }
-  return "[" + out + "\n  ]";
+Json as_json(const std::vector<FoundMode>& modes) {
+  const auto list = [](const Vec3& x) { return Json::list_of(x, [](double y) { return Json(y, 6); }); };
+  return Json::list_of(
+      modes,
+      [&](const FoundMode& m) -> Json {
+        const NaturalMode& f = m.figures;
+        return {{"frequency", {f.frequency(), 12}},
+                {"damping", {f.damping, 6}},
+                {"mass", list(f.mass.head<3>())},
+                {"inertia", list(f.mass.tail<3>())},
+                {"error", {f.error, 3}}};
+      },
+      Json::In::lines);
 }
 std::string as_table(const std::vector<FoundMode>& modes, double mass) {
   std::string out = fmt::format("mode  frequency [Hz]  damping  effective mass along x, y, z, of {:.4g} kg [%]\n", mass);
@@ -77,7 +80,7 @@ class ModeSteps final : public Steps {
     if (modes.empty()) throw Error(time_.where("analysis"), "nothing that has mass can move: there are no modes");
     if (!spins) check_rest(modes);
     for (const FoundMode& m : modes) record(m);
-    run_.figures.modes = as_json(modes);
+    run_.figures.lists.emplace_back("modes", as_json(modes));
     run_.report.table = as_table(modes, system.mass);
     run_.report.t = static_cast<double>(modes.size());
     for (const FoundMode& m : modes)
@@ -134,7 +137,7 @@ class ModeSteps final : public Steps {
     system.add_rates(a, rest.q, z);
     Taken taken{stage_at(at.q, rest.t), at.lambda};
     taken.stage.a = &a;
-    NaturalMode& now = system.part<NaturalModes>().now;
+    NaturalMode& now = system.part<ModeOutput>().now;
     now = m.figures;
     now.amplitude = m.is_real ? amplitude : 0;
     Ledger ledger = run_.audit->ledger();

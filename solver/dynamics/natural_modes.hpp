@@ -6,7 +6,7 @@
 // with K, M and G the derivatives of the very equations that a run integrates: springs, joints, loads that follow, the stress of a preload.
 #pragma once
 #include "dynamics/state.hpp"
-#include "system/natural_modes.hpp"
+#include "system/mode_output.hpp"
 
 namespace hilo {
 

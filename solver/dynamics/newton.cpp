@@ -131,7 +131,7 @@ void Newton::evaluate(bool tangent) {
       combine(last_->along, {{0, &last_->before}});
       system_.add_rates(last_->along, last_->before, by_);
     }
-    s.before = &last_->before, s.along = &last_->along;
+    s.last = &*last_;
   }
   assemble(system_, solver_, s, lambda_, r_, tangent);
   report_.least_det = r_.least_det;
@@ -314,9 +314,7 @@ NewtonReport Newton::take() {
       moved = false;
       continue;
     }
-    if (!solved.ok)
-      return fail(solver_.name() + ": " + solved.message +
-                  (solved.message.find("singular") != std::string::npos ? free_part(system_, solver_, r_.sigma) : ""));
+    if (!solved.ok) return fail(solver_.name() + ": " + solved.message + (solved.is_singular ? free_part(system_, solver_, r_.sigma) : ""));
     if (!(report_.correction <= options_.reach)) return fail("the correction is not finite or leaves the scene");
     if (!options_.patient && it > 0 && report_.correction > (foreseen_ ? growth_ : 0.5) * previous && report_.correction > 1e-6)
       damped_ = true;

@@ -33,11 +33,6 @@ struct NewtonReport {
   std::string reason;        // why it failed
 };
 
-/// How the unknown came to be what it is, for the stresses that a tangent foresees (physics/solid, `foresee`).
-struct Correction {
-  Config before, along;  // where it began, and the way from there to first order
-};
-
 /// Solve for the unknown and lambda from the guesses given.  `stage` makes the stage of an unknown; `guess`: where the first guess is a
 /// linear answer, how it was found.
 NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,

@@ -33,11 +33,13 @@ struct Turn {
   std::string kind;
 };
 
-std::string as_json(const std::vector<Turn>& turns) {
-  std::string out;
-  for (const Turn& t : turns)
-    out += fmt::format("{}\n    {{\"kind\": \"{}\", \"load\": {:.12g}, \"step\": {}}}", out.empty() ? "" : ",", t.kind, t.share, t.step);
-  return out.empty() ? "[]" : "[" + out + "\n  ]";
+Json as_json(const std::vector<Turn>& turns) {
+  return Json::list_of(
+      turns,
+      [](const Turn& t) -> Json {
+        return {{"kind", t.kind}, {"load", {t.share, 12}}, {"step", t.step}};
+      },
+      Json::In::lines);
 }
 
 class PathSteps final : public Steps {
@@ -88,7 +90,7 @@ class PathSteps final : public Steps {
     progress.done();
     run_.report.t = run_.report.steps;
     run_.report.table = table();
-    run_.figures.path = as_json(at_.turns);
+    run_.figures.lists.emplace_back("turns", as_json(at_.turns));
     run_.report.complete = true;
   }
 
@@ -127,7 +129,7 @@ class PathSteps final : public Steps {
   /// The residual at q, with what a law moves where it is under the share p; with a tangent the solver has it.
   void evaluate(const Config& q, const Numbers& lambda, double p, Residual& r, bool tangent, const Correction* last = nullptr) {
     Stage s = stage(q, p);
-    if (last) s.before = &last->before, s.along = &last->along;
+    s.last = last;
     assemble(run_.system, *run_.solver, s, lambda, r, tangent);
   }
   /// dR/dp, where the residual is r.

@@ -74,17 +74,19 @@ Profile::Profile(const Comm& comm, const KktSolver& solver, double began, double
   result_bytes = ignored ? 0 : static_cast<double>(size);
 }
 
-std::string Profile::json() const {
-  std::string out;
+void Profile::tell(Json& run) const {
+  Json phases = Json::object(Json::In::lines);
   for (const Row& r : rows)
-    out += fmt::format(
-        "{}    \"{}\": {{\"seconds\": {:.6g}, \"imbalance\": {:.4g}, \"messages\": {:.0f}, \"collectives\": {:.0f}, \"bytes_sent\": "
-        "{:.0f}}}",
-        out.empty() ? "" : ",\n", r.name, r.seconds, r.imbalance, r.messages, r.collectives, r.bytes);
-  return fmt::format(
-      "  \"profile\": {{\n{}\n  }},\n  \"processor_seconds\": {:.6g},\n  \"undivided_seconds\": {:.6g},\n  \"solver_bytes\": {:.0f},\n  "
-      "\"result_bytes\": {:.0f},\n",
-      out, processor_seconds, undivided_seconds, solver_bytes, result_bytes);
+    phases.add(r.name, {{"seconds", {r.seconds, 6}},
+                        {"imbalance", {r.imbalance, 4}},
+                        {"messages", {r.messages, 15}},
+                        {"collectives", {r.collectives, 15}},
+                        {"bytes_sent", {r.bytes, 15}}});
+  run.add("profile", std::move(phases));
+  run.add("processor_seconds", {processor_seconds, 6});
+  run.add("undivided_seconds", {undivided_seconds, 6});
+  run.add("solver_bytes", {solver_bytes, 15});
+  run.add("result_bytes", {result_bytes, 15});
 }
 
 std::string Profile::text() const {

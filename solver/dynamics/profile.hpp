@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/comm.hpp"
+#include "base/json.hpp"
 #include "base/traffic.hpp"
 #include "linear/kkt.hpp"
 
@@ -58,8 +59,8 @@ struct Profile {
   double solver_bytes = 0, result_bytes = 0;  // matrix and factors of the rank with most; results file
   /// Collective: every rank takes part.  `began`: when the process took up the run, by both clocks.
   Profile(const Comm& comm, const KktSolver& solver, double began, double processor_began, const std::string& results);
-  /// Lines for run.json: keys profile, processor_seconds, undivided_seconds, solver_bytes, result_bytes.
-  std::string json() const;
+  /// To run.json: keys profile, processor_seconds, undivided_seconds, solver_bytes, result_bytes.
+  void tell(Json& run) const;
   /// A table for people.
   std::string text() const;
 };

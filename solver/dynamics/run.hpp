@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/archive.hpp"
+#include "base/json.hpp"
 #include "model/scene.hpp"
 #include "system/system.hpp"
 
@@ -29,8 +30,8 @@ struct RunOptions {
   std::function<std::string(const StepsSoFar& so_far, const std::function<Kept()>& keep)> between_steps = {};
   /// What was kept of a run: this one goes on from there, on any number of ranks, and its file with it.
   Kept from = {};
-  /// What else run.json is to tell of the finished results, key and JSON; called on rank 0.
-  std::function<std::vector<std::pair<std::string, std::string>>()> more = {};
+  /// Adds what else run.json is to tell of the finished results; called on rank 0.
+  std::function<void(Json& run)> more = {};
 };
 
 /// What run.json tells.

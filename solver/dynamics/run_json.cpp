@@ -2,11 +2,9 @@
 // run.json: what a run says of itself.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <set>
 #include <stdexcept>
 
-#include "base/table.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/run_parts.hpp"
 #include "model/left_out.hpp"
@@ -16,34 +14,29 @@ namespace hilo {
 namespace {
 
 /// Of positions, in metres and as a share of the motion.
-std::string error_json(const RunParts& run) {
+Json error_json(const RunParts& run) {
   const ErrorEstimate& e = run.estimate;
-  std::string out = "{";
-  const auto add = [&](const char* key, const std::string& value) {
-    out += fmt::format("{}\n    \"{}\": {}", out == "{" ? "" : ",", key, value);
-  };
-  const auto number = [](double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : "null"; };
+  Json out = Json::object(Json::In::lines);
+  const auto add = [&](const char* key, double x) { out.add(key, {x, 6}); };
   if (e.is_there()) {
-    add("by", e.is_sum() ? "\"steps\"" : "\"a second solution\"");
-    add("end", number(e.end())), add("end_share", number(e.share(e.end())));
-    add("largest", number(e.largest())), add("largest_t", number(e.largest_t())), add("largest_share", number(e.share(e.largest())));
-    add("motion", number(e.motion()));
-    if (run.figures.local > 0) add("amplification", number(e.end() / run.figures.local));
-    if (!e.is_sum()) add("chaotic", e.is_chaotic() ? "true" : "false");
-    if (!e.is_sum()) add("meaningless_from", number(e.meaningless_from()));
+    out.add("by", e.is_sum() ? "steps" : "a second solution");
+    add("end", e.end()), add("end_share", e.share(e.end()));
+    add("largest", e.largest()), add("largest_t", e.largest_t()), add("largest_share", e.share(e.largest()));
+    add("motion", e.motion());
+    if (run.figures.local > 0) add("amplification", e.end() / run.figures.local);
+    if (!e.is_sum()) out.add("chaotic", e.is_chaotic()), add("meaningless_from", e.meaningless_from());
   } else {
-    add("why_not", json_text(!e.why().empty() ? e.why() : run.report.steps > 0 ? "too few steps were taken" : "no step was taken"));
+    out.add("why_not", !e.why().empty() ? e.why() : run.report.steps > 0 ? "too few steps were taken" : "no step was taken");
   }
   if (run.plan.asked > 0) {
-    add("asked", number(run.plan.asked)), add("met", run.report.complete && run.plan.unmet.empty() && e.is_there() ? "true" : "false");
-    std::string passes;
-    for (const StepPlan::Pass& p : run.plan.passes)
-      passes += fmt::format("{}{{\"integrator\": {}, \"steps\": {}, \"end\": {}}}", passes.empty() ? "" : ", ", json_text(p.method),
-                            p.steps, number(p.error));
-    add("passes", "[" + passes + "]");
-    if (const std::string why = run.why_better(); !why.empty()) add("why_better", json_text(why));
+    add("asked", run.plan.asked);
+    out.add("met", run.report.complete && run.plan.unmet.empty() && e.is_there());
+    out.add("passes", Json::list_of(run.plan.passes, [](const StepPlan::Pass& p) -> Json {
+              return {{"integrator", p.method}, {"steps", p.steps}, {"end", {p.error, 6}}};
+            }));
+    if (const std::string why = run.why_better(); !why.empty()) out.add("why_better", why);
   }
-  return out + "\n  }";
+  return out;
 }
 
 }  // namespace
@@ -53,62 +46,52 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   const RunReport& report = run.report;
   const RunFigures& figures = run.figures;
   const Phases& p = phases();
-  std::string j = "{\n";
+  Json j = Json::object(Json::In::lines);
+  j.add("complete", report.complete);
+  if (!report.complete) j.add("reason", report.reason);
+  j.add("t", {report.t, 12});
+  j.add("steps", report.steps);
+  j.add("newton_iterations", report.iterations);
+  j.add("cuts", report.cuts);
+  j.add("length", {system.length, 12});
+  j.add("unknowns", 3 * system.layout.map.n_global);
+  j.add("bodies", system.bodies.size() - 1);
+  j.add("joint_rows", run.redundancy.rows);
+  j.add("redundant_rows", run.redundancy.rows - run.redundancy.rank);
+  j.add("ranks", system.comm->size);
+  j.add("solver", run.solver->name());
+  j.add("integrator", run.analysis == Analysis::dynamic ? run.integrator->name() : run.scene.table("time").text("analysis"));
+  j.add("clocks", Json::list_of(run.integrator->timed()));
+  if (run.analysis == Analysis::dynamic) j.add("error_estimate", error_json(run));
+  if (run.plan.asked > 0) j.add("rejected_steps", figures.rejected);
+  for (const auto& [key, list] : figures.lists) j.add(key, list);
+  if (figures.unstable >= 0) j.add("unstable_states", figures.unstable);
+  const double det = run.audit->least_det();
+  j.add("energy_balance", {run.audit->balance(), 6});
+  j.add("constraint_violation", {run.audit->violation(), 6});
+  j.add("least_det_F", det < 1e299 ? Json(det, 6) : nullptr);
+  j.add("audit", run.audit->json(report.complete ? "" : report.reason));
+  for (const Observer* part : system.all<Observer>()) part->add_to_report(j);
+  if (report.complete && run.options.more) run.options.more(j);
+  j.add("position_change", {figures.assembled, 6});
+  j.add("velocity_change", {figures.projected, 6});
+  j.add("impulses", run.impulses.json());
+  j.add("seconds", {{"all", {profile.rows.back().seconds, 6}},
+                    {"assembly", {p.assembly.seconds, 6}},
+                    {"solve", {p.solve.seconds, 6}},
+                    {"output", {p.output.seconds, 6}}});
+  j.add("counts",
+        {{"evaluations", p.evaluations}, {"tangents", p.tangents}, {"solves", p.solves}, {"linear_iterations", p.linear_iterations}});
+  profile.tell(j);
+  j.add("peak_memory_bytes", {peak_memory, 15});
+  j.add("left_out", left_out_json(run.scene));
+  j.add("mesh", run.options.mesh);
+  j.add("scene", run.scene.path);
+  j.add("provenance", Json::list_of(run.options.provenance));
   std::set<std::string> keys;
-  const auto add = [&](const char* key, const std::string& value) {
+  for (const auto& [key, value] : j.members())
     if (!keys.insert(key).second) throw std::logic_error(fmt::format("run.json has {} twice", key));
-    j += fmt::format("  \"{}\": {},\n", key, value);
-  };
-  add("complete", report.complete ? "true" : "false");
-  if (!report.complete) add("reason", json_text(report.reason));
-  add("t", fmt::format("{:.12g}", report.t));
-  add("steps", fmt::format("{}", report.steps));
-  add("newton_iterations", fmt::format("{}", report.iterations));
-  add("cuts", fmt::format("{}", report.cuts));
-  add("length", fmt::format("{:.12g}", system.length));
-  add("unknowns", fmt::format("{}", 3 * system.layout.map.n_global));
-  add("bodies", fmt::format("{}", system.bodies.size() - 1));
-  add("joint_rows", fmt::format("{}", run.redundancy.rows));
-  add("redundant_rows", fmt::format("{}", run.redundancy.rows - run.redundancy.rank));
-  add("ranks", fmt::format("{}", system.comm->size));
-  add("solver", json_text(run.solver->name()));
-  add("integrator", json_text(run.analysis == Analysis::dynamic ? run.integrator->name() : run.scene.table("time").text("analysis")));
-  std::string clocks;
-  for (const auto& mechanism : run.integrator->timed()) clocks += (clocks.empty() ? "" : ", ") + json_text(mechanism);
-  add("clocks", "[" + clocks + "]");
-  if (run.analysis == Analysis::dynamic) add("error_estimate", error_json(run));
-  if (run.plan.asked > 0) add("rejected_steps", fmt::format("{}", figures.rejected));
-  if (!figures.modes.empty()) add("modes", figures.modes);
-  if (!figures.buckling.empty()) add("load_factors", figures.buckling);
-  if (!figures.path.empty()) add("turns", figures.path);
-  if (!figures.jumps.empty()) add("jumps", "[" + figures.jumps + "\n  ]");
-  if (figures.unstable >= 0) add("unstable_states", fmt::format("{}", figures.unstable));
-  const double balance = run.audit->balance(), det = run.audit->least_det();
-  add("energy_balance", std::isnan(balance) ? "null" : fmt::format("{:.6g}", balance));
-  add("constraint_violation", fmt::format("{:.6g}", run.audit->violation()));
-  add("least_det_F", det < 1e299 ? fmt::format("{:.6g}", det) : "null");
-  add("audit", run.audit->json(report.complete ? "" : report.reason));
-  std::vector<std::pair<std::string, std::string>> said;
-  for (const Observer* part : system.all<Observer>()) part->add_to_report(said);
-  for (const auto& [key, value] : said) add(key.c_str(), value);
-  if (report.complete && run.options.more)
-    for (const auto& [key, value] : run.options.more()) add(key.c_str(), value);
-  add("position_change", fmt::format("{:.6g}", figures.assembled));
-  add("velocity_change", fmt::format("{:.6g}", figures.projected));
-  add("impulses", run.impulses.json());
-  add("seconds", fmt::format("{{\"all\": {:.6g}, \"assembly\": {:.6g}, \"solve\": {:.6g}, \"output\": {:.6g}}}",
-                             profile.rows.back().seconds, p.assembly.seconds, p.solve.seconds, p.output.seconds));
-  add("counts", fmt::format("{{\"evaluations\": {}, \"tangents\": {}, \"solves\": {}, \"linear_iterations\": {}}}", p.evaluations,
-                            p.tangents, p.solves, p.linear_iterations));
-  j += profile.json();
-  add("peak_memory_bytes", fmt::format("{:.0f}", peak_memory));
-  add("left_out", left_out_json(run.scene));
-  add("mesh", json_text(run.options.mesh));
-  add("scene", json_text(run.scene.path));
-  std::string list;
-  for (const auto& line : run.options.provenance) list += (list.empty() ? "" : ", ") + json_text(line);
-  j += fmt::format("  \"provenance\": [{}]\n}}\n", list);
-  write_text_file(stem(run.options.output) + ".json", j);
+  write_text_file(stem(run.options.output) + ".json", j.text() + "\n");
 }
 
 }  // namespace hilo

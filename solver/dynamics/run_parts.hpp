@@ -21,10 +21,7 @@ namespace hilo {
 struct RunFigures {
   double assembled = 0, projected = 0;  // changes of positions at the start [m], of velocities [m/s]
   double local = -1;                    // sum of local position errors [m], where the tolerance chooses steps of a method of second order
-  std::string modes;                    // of an analysis of modes, JSON
-  std::string buckling;                 // of one of buckling, JSON
-  std::string path;                     // of one of a path: where it turns, JSON
-  std::string jumps;                    // of a static run to other branches, JSON
+  std::vector<Json::Member> lists;      // modes, load factors, turns of a path or jumps to other branches
   long rejected = 0;                    // steps
   long unstable = -1;                   // states of a static run that were kept though not stable
 };

@@ -96,7 +96,13 @@ class StaticSteps final : public Steps {
     progress.done();
     run_.report.t = state.t;
     if (examined_) run_.figures.unstable = at_.unstable_states;
-    run_.figures.jumps = at_.jumps;
+    if (!at_.jumps.empty())
+      run_.figures.lists.emplace_back("jumps", Json::list_of(
+                                                   at_.jumps,
+                                                   [](const Jumped& j) -> Json {
+                                                     return {{"from", {j.from, 12}}, {"to", {j.to, 12}}, {"way", {j.way, 6}}};
+                                                   },
+                                                   Json::In::lines));
     if (run_.talk && is_large())
       fmt::print(stderr, "stability was not examined: beyond {} unknowns it would cost more than the load steps\n", 3 * most_blocks);
     else if (run_.talk && !examined_)
@@ -200,8 +206,7 @@ class StaticSteps final : public Steps {
     warn(place(), jumped(next) +
                       ", to another branch of equilibrium, as in a snap-through: analysis = \"path\" follows what lies between, "
                       "a run in time tells where it would come to rest");
-    at_.jumps +=
-        fmt::format("{}\n    {{\"from\": {:.12g}, \"to\": {:.12g}, \"way\": {:.6g}}}", at_.jumps.empty() ? "" : ",", at_.done, next, jump_);
+    at_.jumps.push_back({at_.done, next, jump_});
   }
   bool is_large() const { return run_.system.layout.map.n_global > most_blocks; }
   std::string place() const { return run_.scene.table("time").where("analysis"); }
@@ -213,12 +218,15 @@ class StaticSteps final : public Steps {
     State state;
     double next, jump;
   };
+  struct Jumped {
+    double from, to, way;  // of the loads; of positions [m]
+  };
   struct Place {
     double done = 0, step = 1;  // shares of the loads
     LeastDet least;             // of the steps taken
     bool unstable = false;      // the last one
     long unstable_states = 0;
-    std::string jumps;           // told, as JSON
+    std::vector<Jumped> jumps;   // told
     std::optional<Ahead> ahead;  // the nearest state that is not stable, or on another branch
   } at_;
   static constexpr int most_blocks = 30000;  // beyond, the count would cost more than the step

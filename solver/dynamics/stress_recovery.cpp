@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "base/shell_shape.hpp"
-#include "dynamics/cell_mean.hpp"
+#include "dynamics/linear_cell_mean.hpp"
 #include "model/mesh.hpp"
 #include "model/region_surface.hpp"
 #include "system/linear_regions.hpp"

@@ -46,7 +46,15 @@ struct SolveReport {
   double residual = 0;  // |A x - b|/|b| in the maximum norm, by multiplication, not claimed by the solver
   int iterations = 0;   // 0 for a direct solver
   std::string message;
-  int most_within = 0;  // of one solve within the preconditioner, where that iterates
+  int most_within = 0;       // of one solve within the preconditioner, where that iterates
+  bool is_singular = false;  // the matrix has no inverse
+
+  static SolveReport failed(std::string message, double residual = 1) {
+    return {.ok = false, .residual = residual, .message = std::move(message)};
+  }
+  static SolveReport singular(const std::string& how = "", double residual = 1) {
+    return {.ok = false, .residual = residual, .message = "the matrix is singular" + how, .is_singular = true};
+  }
 };
 
 class KktSolver {

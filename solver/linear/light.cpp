@@ -102,7 +102,7 @@ class LightSolver final : public SerialKktSolver {
     // pivots of the factorisation before serve again while the residual says that they are good ones
     if (refactor())
       if (const SolveReport report = refine(b, x, 1); report.ok) return report;
-    if (!factor()) return factored_ = false, SolveReport{false, 1, 0, "the matrix is singular"};
+    if (!factor()) return factored_ = false, SolveReport::singular();
     return refine(b, x, 3);
   }
 
@@ -171,8 +171,8 @@ class LightSolver final : public SerialKktSolver {
   SolveReport factor_and_iterate(std::span<const double> b, std::span<double> x, double tolerance) {
     ready_ = false;
     if (!factor())
-      return {false, 1, 0,
-              is_definite_ ? "not positive definite: the flexible part may be unstable or held by too little" : "the matrix is singular"};
+      return is_definite_ ? SolveReport::failed("not positive definite: the flexible part may be unstable or held by too little")
+                          : SolveReport::singular();
     find_weights();
     const SolveReport report = iterate(b, x, tolerance, 60);
     rate_ = report.iterations / -std::log10(std::clamp(report.residual, 1e-12, 0.5));
@@ -227,7 +227,7 @@ class LightSolver final : public SerialKktSolver {
     constexpr double tiny = 1e-280;  // what is at rest but for numbers below the normal ones has no relative residual
     SolveReport report;
     report.residual = norm > tiny ? worst / norm : worst;
-    if (!std::isfinite(report.residual)) return {false, report.residual, 0, "the matrix is singular to working precision"};
+    if (!std::isfinite(report.residual)) return SolveReport::singular(" to working precision", report.residual);
     // an ill-conditioned matrix leaves no better residual than round-off of what the rows sum
     const double backward = terms > tiny ? worst / terms : 0;
     if (report.residual > (is_klu_ ? 1e-6 : 1e-12) && backward > (is_klu_ ? 1e-12 : 1e-15))

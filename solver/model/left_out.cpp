@@ -45,13 +45,13 @@ void refuse_left_out(const Scene& scene) {
   }
 }
 
-std::string left_out_json(const Scene& scene) {
-  std::string list;
-  for (const Entry& e : scene.entries("left_out"))
-    list += fmt::format("{}{{\"loss\": {}, \"card\": {}, \"count\": {:.0f}, \"place\": {}}}", list.empty() ? "" : ", ",
-                        json_text(e.text("loss")), json_text(e.text("card")), e.number("count"),
-                        json_text(e.has("place") ? e.text("place") : ""));
-  return "[" + list + "]";
+Json left_out_json(const Scene& scene) {
+  return Json::list_of(scene.entries("left_out"), [](const Entry& e) -> Json {
+    return {{"loss", e.text("loss")},
+            {"card", e.text("card")},
+            {"count", {e.number("count"), 12}},
+            {"place", e.has("place") ? e.text("place") : ""}};
+  });
 }
 
 }  // namespace hilo

@@ -3,6 +3,7 @@
 #pragma once
 #include <string>
 
+#include "base/json.hpp"
 #include "model/scene.hpp"
 
 namespace hilo {
@@ -12,6 +13,6 @@ void tell_left_out(const Scene& scene);
 /// Error (bad input) where a tie was lost, or where all loads of a static analysis were.
 void refuse_left_out(const Scene& scene);
 /// The entries as JSON, for run.json.
-std::string left_out_json(const Scene& scene);
+Json left_out_json(const Scene& scene);
 
 }  // namespace hilo

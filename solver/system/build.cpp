@@ -15,8 +15,8 @@
 #include "system/load_path.hpp"
 #include "system/loads.hpp"
 #include "system/modal_damping.hpp"
+#include "system/mode_output.hpp"
 #include "system/motions.hpp"
-#include "system/natural_modes.hpp"
 #include "system/point_masses.hpp"
 #include "system/region_measures.hpp"
 #include "system/solids.hpp"
@@ -68,7 +68,7 @@ void Builder::add_contributions() {
   s.add<RegionMeasures>(s);
   s.add<ModalDamping>(s);
   const std::string& analysis = scene_.table("time").text("analysis");
-  if (analysis == "modes") s.add<NaturalModes>(static_cast<int>(scene_.table("time").number("modes")));
+  if (analysis == "modes") s.add<ModeOutput>(static_cast<int>(scene_.table("time").number("modes")));
   if (analysis == "buckling") s.add<BucklingModes>();
   if (analysis == "path") s.add<LoadPath>();
 }

@@ -55,7 +55,122 @@ void Builder::add_line_load(const Entry& e, const Load& load) {
   if (!any) throw Error(e.where("on"), fmt::format("{}: no beam \"{}\"", e.label(), on), suggest(on, names));
 }
 
+/// One entry, of any kind but a line.
+struct Builder::LoadReading {
+  Builder& b;
+  const Entry& e;
+  Load load;
+  std::string where = e.where("on");
+  const std::string& on = e.text("on");
+  Found found = b.find(on, where);
+  System& out = *b.out_;
+
+  bool has_facets() const { return b.mesh_ && b.mesh_->mesh.facet_sets.contains(on); }
+  bool is_of_body() const { return found.body >= 0 && found.n_global == 0; }
+  std::vector<std::vector<int>> facets() const {
+    if (!has_facets()) throw Error(where, fmt::format("{}: \"{}\" is not a set of facets", e.label(), on), "name a 2-D group or *SURFACE");
+    std::vector<std::vector<int>> list;
+    for (const Facet& f : b.mesh_->mesh.facet_sets.at(on)) {
+      const auto nodes = b.mesh_->mesh.facet_nodes(f);
+      list.emplace_back(nodes.begin(), nodes.end());
+    }
+    return list;
+  }
+  /// Returns the area of all ranks.
+  double share_by_area() {
+    std::vector<double> weight(out.X.size(), 0.0);
+    double area = 0;
+    for (const auto& facet : facets()) {
+      std::vector<Vec3> X;
+      for (int i : facet) X.push_back(out.X[i]);
+      const auto w = facet_weights(X);
+      for (size_t a = 0; a < facet.size(); ++a) weight[facet[a]] += w[a], area += w[a];
+    }
+    for (size_t i = 0; i < weight.size(); ++i)
+      if (weight[i] != 0) load.nodes.push_back(static_cast<int>(i)), load.weight.push_back(weight[i]);
+    return b.comm_.sum(area);
+  }
+
+  void force() {
+    load.value = e.vector3("force");
+    if (found.body >= 0 && (found.n_global == 0 || e.has("at") || (found.is_region && !e.boolean("per_node")))) {
+      load.kind = Load::Kind::body_force;
+      load.body = found.body;
+      const Vec3& centre = out.bodies[found.body].Xc;
+      if (e.has("at"))
+        load.arm = e.vector3("at") - centre;
+      else if (found.is_region)
+        load.arm = b.centre_of(b.shares_of(found)) - centre;
+      return;
+    }
+    if (e.has("at"))
+      throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, its force is shared by its nodes", e.label(), on),
+                  "name a set of nodes there");
+    if (e.boolean("per_node")) {
+      for (int i : found.nodes)
+        if (out.node_owned[i]) load.nodes.push_back(i), load.weight.push_back(1);
+    } else if (has_facets()) {
+      const double area = share_by_area();
+      for (double& w : load.weight) w /= area;
+    } else {
+      for (const auto& [i, share] : b.shares_of(found)) load.nodes.push_back(i), load.weight.push_back(share);
+    }
+  }
+  void traction() {
+    load.value = e.vector3("traction");
+    share_by_area();
+  }
+  void pressure() {
+    load.kind = Load::Kind::pressure;
+    load.pressure = e.number("pressure");
+    load.facets = facets();
+  }
+  void torque() {
+    load.kind = Load::Kind::body_torque;
+    load.value = e.vector3("torque");
+    load.follower = e.boolean("follower");
+    load.body = b.body_of(on, found, where);
+  }
+  /// Each component is a load of its own.
+  void of_mass(const std::function<Vec3(const Vec3&)>& acceleration) {
+    std::map<int, Vec3> force = b.forces_of_mass(e, acceleration);
+    for (Load& one : b.take_rigid_share(force, load)) out.part<Loads>().list.push_back(std::move(one));
+    for (int k = 0; k < 3; ++k) {
+      Load one = load;
+      one.value = Vec3::Unit(k);
+      for (const auto& [i, f] : force)
+        if (f[k] != 0) one.nodes.push_back(i), one.weight.push_back(f[k]);
+      if (k < 2)
+        out.part<Loads>().list.push_back(std::move(one));
+      else
+        load = std::move(one);
+    }
+  }
+  void acceleration() {
+    const Vec3 a = e.vector3("acceleration");
+    if (!is_of_body()) return of_mass([a](const Vec3&) { return a; });
+    load.kind = Load::Kind::body_force, load.body = found.body;
+    load.value = out.bodies[found.body].mass * a;
+  }
+  void centrifugal() {
+    if (is_of_body()) throw Error(where, e.label() + ": a body has no cells", "give it the force that it has");
+    const Vec3 at = e.vector3("at"), axis = direction(e, "axis");
+    const double square = e.number("speed") * e.number("speed");
+    of_mass([=](const Vec3& X) { return Vec3(square * (X - at - (X - at).dot(axis) * axis)); });
+  }
+};
+
 void Builder::add_loads() {
+  struct Kind {
+    std::string_view name;
+    void (LoadReading::*read)();
+  };
+  const Registry<Kind> kinds("load", {{"force", &LoadReading::force},
+                                      {"traction", &LoadReading::traction},
+                                      {"pressure", &LoadReading::pressure},
+                                      {"torque", &LoadReading::torque},
+                                      {"acceleration", &LoadReading::acceleration},
+                                      {"centrifugal", &LoadReading::centrifugal}});
   for (const Entry& e : scene_.entries("load")) {
     Load load;
     load.name = e.name;
@@ -66,117 +181,10 @@ void Builder::add_loads() {
       add_line_load(e, load);
       continue;
     }
-    const std::string where = e.where("on"), &on = e.text("on");
-    const Found found = find(on, where);
-    if (found.body == 0) throw Error(where, e.label() + ": a load on the ground does nothing");
-    const bool has_facets = mesh_ && mesh_->mesh.facet_sets.contains(on);
-    const auto facets = [&] {
-      if (!has_facets) throw Error(where, fmt::format("{}: \"{}\" is not a set of facets", e.label(), on), "name a 2-D group or *SURFACE");
-      std::vector<std::vector<int>> list;
-      for (const Facet& f : mesh_->mesh.facet_sets.at(on)) {
-        const auto nodes = mesh_->mesh.facet_nodes(f);
-        list.emplace_back(nodes.begin(), nodes.end());
-      }
-      return list;
-    };
-    const auto share_by_area = [&](double& area) {
-      std::vector<double> weight(out_->X.size(), 0.0);
-      area = 0;
-      for (const auto& facet : facets()) {
-        std::vector<Vec3> X;
-        for (int i : facet) X.push_back(out_->X[i]);
-        const auto w = facet_weights(X);
-        for (size_t a = 0; a < facet.size(); ++a) weight[facet[a]] += w[a], area += w[a];
-      }
-      area = comm_.sum(area);
-      for (size_t i = 0; i < weight.size(); ++i)
-        if (weight[i] != 0) load.nodes.push_back(static_cast<int>(i)), load.weight.push_back(weight[i]);
-    };
-    const auto force = [&] {
-      load.value = e.vector3("force");
-      if (found.body >= 0 && (found.n_global == 0 || e.has("at") || (found.is_region && !e.boolean("per_node")))) {
-        load.kind = Load::Kind::body_force;
-        load.body = found.body;
-        const Vec3& centre = out_->bodies[found.body].Xc;
-        if (e.has("at"))
-          load.arm = e.vector3("at") - centre;
-        else if (found.is_region)
-          load.arm = centre_of(shares_of(found)) - centre;
-      } else {
-        if (e.has("at"))
-          throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, its force is shared by its nodes", e.label(), on),
-                      "name a set of nodes there");
-        load.kind = Load::Kind::nodal;
-        if (has_facets && !e.boolean("per_node")) {
-          double area = 0;
-          share_by_area(area);
-          for (double& w : load.weight) w /= area;
-        } else if (e.boolean("per_node")) {
-          for (int i : found.nodes)
-            if (out_->node_owned[i]) load.nodes.push_back(i), load.weight.push_back(1);
-        } else {
-          for (const auto& [i, share] : shares_of(found)) load.nodes.push_back(i), load.weight.push_back(share);
-        }
-      }
-    };
-    const auto traction = [&] {
-      load.kind = Load::Kind::nodal;
-      load.value = e.vector3("traction");
-      double area = 0;
-      share_by_area(area);
-    };
-    const auto pressure = [&] {
-      load.kind = Load::Kind::pressure;
-      load.pressure = e.number("pressure");
-      load.facets = facets();
-    };
-    const auto torque = [&] {
-      load.kind = Load::Kind::body_torque;
-      load.value = e.vector3("torque");
-      load.follower = e.boolean("follower");
-      load.body = body_of(on, found, where);
-    };
-    // each component is a load of its own
-    const auto of_mass = [&](const std::function<Vec3(const Vec3&)>& acceleration) {
-      load.kind = Load::Kind::nodal;
-      std::map<int, Vec3> force = forces_of_mass(e, acceleration);
-      for (Load& one : take_rigid_share(force, load)) out_->part<Loads>().list.push_back(std::move(one));
-      for (int k = 0; k < 3; ++k) {
-        Load one = load;
-        one.value = Vec3::Unit(k);
-        for (const auto& [i, f] : force)
-          if (f[k] != 0) one.nodes.push_back(i), one.weight.push_back(f[k]);
-        if (k < 2)
-          out_->part<Loads>().list.push_back(std::move(one));
-        else
-          load = std::move(one);
-      }
-    };
-    const auto of_acceleration = [&] {
-      const Vec3 a = e.vector3("acceleration");
-      if (found.body < 0 || found.n_global > 0) return of_mass([a](const Vec3&) { return a; });
-      load.kind = Load::Kind::body_force, load.body = found.body;
-      load.value = out_->bodies[found.body].mass * a;
-    };
-    const auto centrifugal = [&] {
-      if (found.body >= 0 && found.n_global == 0) throw Error(where, e.label() + ": a body has no cells", "give it the force that it has");
-      const Vec3 at = e.vector3("at"), axis = direction(e, "axis");
-      const double square = e.number("speed") * e.number("speed");
-      of_mass([=](const Vec3& X) { return Vec3(square * (X - at - (X - at).dot(axis) * axis)); });
-    };
-    struct Kind {
-      std::string_view name;
-      std::function<void()> read;
-    };
-    Registry<Kind>("load", {{"force", force},
-                            {"traction", traction},
-                            {"pressure", pressure},
-                            {"torque", torque},
-                            {"acceleration", of_acceleration},
-                            {"centrifugal", centrifugal}})
-        .at(e.kind, e.place.text())
-        .read();
-    out_->part<Loads>().list.push_back(std::move(load));
+    LoadReading one{*this, e, load};
+    if (one.found.body == 0) throw Error(one.where, e.label() + ": a load on the ground does nothing");
+    (one.*kinds.at(e.kind, e.place.text()).read)();
+    out_->part<Loads>().list.push_back(std::move(one.load));
   }
 }
 

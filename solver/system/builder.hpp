@@ -122,6 +122,7 @@ class Builder {
   void add_motions();
   void set_initial_velocities();
   // build_loads.cpp
+  struct LoadReading;
   void add_loads();
   void drop_spinning_torques();
   void add_line_load(const Entry& e, const Load& load);

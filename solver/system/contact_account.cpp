@@ -284,17 +284,20 @@ void Contacts::each_facet(const Config& q, const std::function<void(const Presse
                    });  // the other half: of the other side
 }
 
-void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
-  std::string text;
+void Contacts::add_to_report(Json& run) const {
+  Json contacts = Json::object(Json::In::lines);
   const auto tell = [&](const std::string& name, size_t points, const std::string& told, const ContactSums& sums, bool loses) {
     if (sums.impacts > 0 && sums.shortest < resolved)
       warn(fmt::format("contact \"{}\"", name), fmt::format("the shortest of {} impacts lasted {} steps: {}", sums.impacts, sums.shortest,
                                                             plain   ? "neither its force nor its energy is resolved"
                                                             : loses ? "its force and its restitution are not resolved"
                                                                     : "it gave its energy back, but its force is not resolved"));
-    text += fmt::format(
-        "{}\n    {}: {{\"points\": {}, \"stiffness\": {}, \"slip\": {:.6g}, \"dissipated\": {:.6g}, \"impacts\": {}, \"shortest\": {}}}",
-        text.empty() ? "" : ",", json_text(name), points, json_text(told), sums.slip, sums.dissipated, sums.impacts, sums.shortest);
+    contacts.add(name, {{"points", points},
+                        {"stiffness", told},
+                        {"slip", {sums.slip, 6}},
+                        {"dissipated", {sums.dissipated, 6}},
+                        {"impacts", sums.impacts},
+                        {"shortest", sums.shortest}});
   };
   for (const ContactPair& pair : list)
     if (pair.sums.outside > pair.outside)
@@ -304,7 +307,7 @@ void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& r
   for (const ContactPair& pair : list) tell(pair.name, static_cast<size_t>(pair.n_points), pair.told, pair.sums, pair.loses);
   for (const SurfacePair& pair : surfaces) tell(pair.name, pair.n_points(), pair.told, pair.sums, pair.loses);
   for (const BallHeap& heap : heaps) tell(heap.name, heap.balls.size(), heap.told, heap.sums, heap.loses);
-  if (!text.empty()) report.emplace_back("contacts", "{" + text + "\n  }");
+  if (!contacts.members().empty()) run.add("contacts", std::move(contacts));
 }
 
 void Contacts::tie(Ties& ties) const {

@@ -38,7 +38,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
   void observe(const Sight& at) override;
-  void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
+  void add_to_report(Json& run) const override;
   void tie(Ties& ties) const override;
   bool touches() const override { return !list.empty() || !surfaces.empty() || !heaps.empty(); }
   bool has_facets() const override;

@@ -16,6 +16,8 @@
 #include <vector>
 
 #include "base/archive.hpp"
+#include "base/joined.hpp"
+#include "base/json.hpp"
 #include "system/constraint.hpp"
 #include "system/pass.hpp"
 
@@ -34,7 +36,12 @@ struct Traits {
   bool lumps_masses = false;  // masses on the diagonal, outside of cliques
   bool slides = false;        // contacts that may have friction
   bool reaches = false;       // joins nodes of which the rank that evaluates it has no cell
-  Traits& operator|=(const Traits& other);
+  Traits& operator|=(const Traits& o) {
+    deforms |= o.deforms, constrains |= o.constrains, has_rates |= o.has_rates;
+    is_pressed |= o.is_pressed, is_driven |= o.is_driven, remembers |= o.remembers, searches |= o.searches;
+    is_thin |= o.is_thin, lumps_masses |= o.lumps_masses, slides |= o.slides, reaches |= o.reaches;
+    return *this;
+  }
 };
 
 struct Energy {
@@ -84,20 +91,20 @@ struct Turned {
 /// How bodies hang together: mechanisms, for clocks of their own (dynamics/clock).
 class Ties {
  public:
-  explicit Ties(int n_bodies);
+  explicit Ties(size_t n_bodies) : joined_(n_bodies), freedoms_(n_bodies, 0), excluded_(n_bodies, 0) {}
   /// Bodies are connected.
-  void connect(int a, int b);
+  void connect(int a, int b) { joined_.join(a, b); }
   /// So many freedoms less of the mechanism of body b.
   void hold(int b, int rows) { freedoms_[b] -= rows; }
   /// The mechanism of body b is flexible, or moved from outside.
   void exclude(int b) { excluded_[b] = 1; }
-  int root(int b) const;
+  int root(int b) { return joined_.root(b); }
   int freedoms(int b) const { return freedoms_[b]; }
   bool is_excluded(int b) const { return excluded_[b] > 0; }
   std::vector<double>& excluded() { return excluded_; }
 
  private:
-  mutable std::vector<int> parent_;
+  Joined<> joined_;
   std::vector<int> freedoms_;
   std::vector<double> excluded_;  // some contributions know their part of the model alone: summed over the ranks
 };
@@ -260,8 +267,8 @@ class Observer {
   virtual std::vector<Output> outputs() const = 0;
   /// Called once for the start of a run and for every accepted step: its numbers, and what it keeps of the whole run.  Collective.
   virtual void observe(const Sight& at) = 0;
-  /// What it has to say of the whole run, for run.json: keys and values; warnings besides.  On rank 0.
-  virtual void add_to_report(std::vector<std::pair<std::string, std::string>>& /*report*/) const {}
+  /// What it has to say of the whole run, to run.json; warnings besides.  On rank 0.
+  virtual void add_to_report(Json& /*run*/) const {}
 };
 
 /// What clocks of mechanisms ask; `group`: of each body, or -1.

@@ -8,7 +8,7 @@ namespace hilo {
 
 /// A load: nodal weights or facets or a body, times a history.
 struct Load {
-  enum class Kind { nodal, pressure, body_force, body_torque } kind;
+  enum class Kind { nodal, pressure, body_force, body_torque } kind = Kind::nodal;
   std::string name;
   Vec3 value = Vec3::Zero();  // force [N] or torque [N m]; for nodal loads per unit weight
   double pressure = 0;        // [Pa]

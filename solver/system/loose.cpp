@@ -160,7 +160,8 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
     std::vector<std::string> names;
     for (int r = 0; r < n_regions; ++r)
       if (s[5 + r] > 0) names.push_back('"' + mesh->mesh.region_name[r] + '"');
-    p.name = fmt::format("region{} {}", names.size() > 1 ? "s" : "", fmt::join(names, ", "));
+    p.are_several = names.size() > 1;
+    p.name = fmt::format("region{} {}", p.are_several ? "s" : "", fmt::join(names, ", "));
   }
   std::vector<Vec3> node(X.size(), Vec3::Zero());
   std::vector<Vec6> body(bodies.size(), Vec6::Zero());
@@ -247,7 +248,7 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
   std::sort(order.begin(), order.end());
   for (const auto& [late, k] : order) {
     if (lines.size() == 3 || (late && !lines.empty())) break;
-    std::string line = parts[k].name + (parts[k].name.starts_with("regions") ? " are " : " is ") + told(Z.middleRows<6>(6 * k), parts[k]);
+    std::string line = parts[k].name + (parts[k].are_several ? " are " : " is ") + told(Z.middleRows<6>(6 * k), parts[k]);
     if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
   }
   out.text = fmt::format("{}", fmt::join(lines, "; "));

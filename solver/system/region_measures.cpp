@@ -179,13 +179,15 @@ void RegionMeasures::observe(const Sight& seen) {
 }
 
 /// What is told at the end, with what to do; a region that stiffens has strains of the second degree.
-void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
+void RegionMeasures::add_to_report(Json& run) const {
   constexpr double much_lacking = 0.05, wide_band = 0.5, much_with_band = 0.02, much_quadratic = 0.1, much_growth = 1.1,
                    much_shortening = 0.012;
   const auto& linear = system_.part<LinearRegions>();
   Table table;
   table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling", "tension", "shortening", "bend", "spin"};
-  std::string lists[8], beyond;
+  const char* names[] = {"modes_left_out", "load_band", "quadratic_strain", "buckling", "tension", "shortening", "bend", "spin"};
+  std::vector<Json> lists(std::size(names), Json::object());
+  Json beyond = Json::list();
   struct Beyond {
     double times;  // the limit
     std::string region, text;
@@ -201,14 +203,17 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
     auto& row = table.rows.emplace_back(std::vector{name});
     int column = 0;
     for (const double x : {lacking, band, quadratic, share, std::max(1.0, r.tension.value), shortening, linear.bend(k), linear.spin(k)}) {
-      lists[column] += fmt::format("{}{}: {:.3g}", lists[column].empty() ? "" : ", ", json_text(name), x), ++column;
+      lists[column++].add(name, {x, 3});
       row.push_back(fmt::format("{:.2g}", x));
     }
     const auto leaves = [&](const char* measure, double value, double limit, double t, const std::string& text, Told told = Told::at_end) {
       if (told == Told::at_end) warnings[measure].push_back({value / limit, name, text});
-      beyond += fmt::format("{}{{\"region\": {}, \"measure\": \"{}\", \"value\": {:.3g}, \"limit\": {:.3g}, \"t\": {}, \"said\": {}}}",
-                            beyond.empty() ? "" : ", ", json_text(name), measure, value, limit, t < 0 ? "null" : fmt::format("{:.6g}", t),
-                            json_text(text));
+      beyond.append({{"region", name},
+                     {"measure", measure},
+                     {"value", {value, 3}},
+                     {"limit", {limit, 3}},
+                     {"t", t < 0 ? Json(nullptr) : Json(t, 6)},
+                     {"said", text}});
     };
     if (lacking > much_lacking)
       leaves("modes_left_out", lacking, much_lacking, -1,
@@ -259,9 +264,8 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
       warn("", fmt::format("{} linear regions more are beyond the limit of {}: beyond_linear of run.json lists them", of.size() - shown,
                            measure));
   }
-  const char* names[] = {"modes_left_out", "load_band", "quadratic_strain", "buckling", "tension", "shortening", "bend", "spin"};
-  for (int i = 0; i < 8; ++i) report.emplace_back(names[i], "{" + lists[i] + "}");
-  report.emplace_back("beyond_linear", "[" + beyond + "]");
+  for (size_t i = 0; i < lists.size(); ++i) run.add(names[i], std::move(lists[i]));
+  run.add("beyond_linear", std::move(beyond));
   if (!is_quiet()) fmt::print(stderr, "{}", table.text());
 }
 

@@ -32,7 +32,7 @@ class RegionMeasures final : public Contribution, public Observer {
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
   void observe(const Sight& at) override;
-  void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
+  void add_to_report(Json& run) const override;
 
   /// The largest so far, and when.
   struct Peak {

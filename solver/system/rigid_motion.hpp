@@ -16,6 +16,7 @@ struct Part {
   Vec3 centre = Vec3::Zero();
   double length = 0;  // of its rotations [m]
   std::string name;
+  bool are_several = false;  // regions
 };
 
 /// Vectors z with z.N z = 0, orthonormal.

@@ -68,7 +68,7 @@ void Solids::evaluate(Pass& p) const {
       const double share = d->kappa / viscous;
       call.past[0] = one, call.past[1] = two, call.recall[0] = share * d->last(), call.recall[1] = share * d->before();
     }
-    if (K && s.before) call.before = before, call.along = along;
+    if (K && s.last) call.before = before, call.along = along;
     std::optional<CellStages> stages;
     const int by = s.step ? columns_of(s) : 0;
     const bool crossed = K && s.step && by != s.member;
@@ -79,7 +79,7 @@ void Solids::evaluate(Pass& p) const {
       gather(b, first, W, s.e1->x, x1);
       gather(b, first, W, s.a->x, a);
       if (call.past[0]) gather(b, first, W, s.dissipation->one->x, one), gather(b, first, W, s.dissipation->two->x, two);
-      if (call.before) gather(b, first, W, s.before->x, before), gather(b, first, W, s.along->x, along);
+      if (call.before) gather(b, first, W, s.last->before.x, before), gather(b, first, W, s.last->along.x, along);
       if (b.kernel.n_state > 0) gather_state(b, first, W, b.h0, h0);
       for (int k = 0; k < n; ++k)
         for (int i = 0; i < 3; ++i)

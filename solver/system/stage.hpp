@@ -29,6 +29,11 @@ struct Dissipation {
   double before() const { return share2 / 3; }
 };
 
+/// How the unknown came to be what it is, for the stresses that a tangent foresees (physics/solid, `foresee`).
+struct Correction {
+  Config before, along;  // where it began, and the way from there to first order
+};
+
 /// Everything an evaluation needs besides the unknowns.
 struct Stage {
   const Config* end;                         // q1, the unknown: increments and constraint rows live here
@@ -52,12 +57,12 @@ struct Stage {
   const Config* v0 = nullptr;                // start velocities, where v1 = v0 + h a: there inertia works through h (v0 + v1)/2
   bool rates_alone = false;                  // how accelerations, rates and rows of velocities act on the equations of another stage
   double elapsed = 0;                        // of materials since their accepted state [s]; 0: nothing flows, infinite: too slow for rates
-  const Config *before = nullptr, *along = nullptr;  // e1 before Newton's last correction, and that to first order; null: none
-  double load_factor = 1;                            // of gravity and of loads without a history, for static load steps
-  const Collocation* step = nullptr;  // of a stage that shares its step with others: rows hold increments, forces keep energy
-  int member = 0;                     // which of them this is
-  bool slopes_of_end = false;         // of strains that are not of the second degree, where `weight` takes a mean: for buckling
-  bool fixed_friction = false;        // tangents without what the pressure adds to friction: for eigenvalues
+  const Correction* last = nullptr;          // Newton's, that led to e1; null: none
+  double load_factor = 1;                    // of gravity and of loads without a history, for static load steps
+  const Collocation* step = nullptr;         // of a stage that shares its step with others: rows hold increments, forces keep energy
+  int member = 0;                            // which of them this is
+  bool slopes_of_end = false;                // of strains that are not of the second degree, where `weight` takes a mean: for buckling
+  bool fixed_friction = false;               // tangents without what the pressure adds to friction: for eigenvalues
   /// Derivatives of w0 and w1 by `end`.
   double slope0() const {
     const double x = slope - h * alpha_slope / 2;

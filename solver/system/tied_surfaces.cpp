@@ -400,13 +400,16 @@ void TiedSurfaces::tell_rows() {
   for (const Told& row : told) list[row.tie].rows.push_back({-1, {}, row.on, row.implied, row.number, 1});
 }
 
-void TiedSurfaces::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
+void TiedSurfaces::add_to_report(Json& run) const {
   if (list.empty()) return;
-  std::string text;
+  Json ties = Json::object(Json::In::lines);
   for (const SurfaceTie& tie : list)
-    text += fmt::format("{}\n    {}: {{\"nodes\": {}, \"tied\": {}, \"covered\": {:.6g}, \"largest_move\": {:.6g}, \"implied_rows\": {}}}",
-                        text.empty() ? "" : ",", json_text(tie.name), tie.n_nodes, tie.n_tied, tie.covered, tie.largest_move, tie.n_off);
-  report.emplace_back("ties", "{" + text + "}");
+    ties.add(tie.name, {{"nodes", tie.n_nodes},
+                        {"tied", tie.n_tied},
+                        {"covered", {tie.covered, 6}},
+                        {"largest_move", {tie.largest_move, 6}},
+                        {"implied_rows", tie.n_off}});
+  run.add("ties", std::move(ties));
 }
 
 const std::vector<TiedGroup>& tied_groups(const System& system) { return system.part<TiedSurfaces>().groups; }

@@ -76,7 +76,7 @@ class TiedSurfaces final : public Contribution, public Equations, public Constra
   std::vector<Output> outputs() const override;
   /// Force and moment on b about the mean of its nodes that are tied.
   void observe(const Sight& at) override;
-  void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
+  void add_to_report(Json& run) const override;
 
  private:
   bool is_free(int node, int component) const;

@@ -9,8 +9,7 @@ namespace {
 TEST(Table, AlignsNumbersToTheRightAndCountsCharactersNotBytes) {
   const Table t{{"name", "n"}, {{"größe", "1"}, {"12", "100"}}};
   EXPECT_EQ(t.text(), "name     n\ngröße    1\n12     100\n");
-  EXPECT_EQ(t.json(""), "[\n  {\"name\": \"größe\", \"n\": 1},\n  {\"name\": \"12\", \"n\": 100}\n]");
-  EXPECT_EQ(json_text("a\"b\\c\n\x01"), "\"a\\\"b\\\\c\\n\\u0001\"");
+  EXPECT_EQ(t.json().text(), "[\n  {\"name\": \"größe\", \"n\": 1},\n  {\"name\": \"12\", \"n\": 100}\n]");
 }
 
 }  // namespace

@@ -17,25 +17,24 @@ def body(name, com, more=""):
 
 Z, GRAVITY = "axis = [0, 0, 1]", "gravity = [0, -9.81, 0]\n"
 PENDULUM = GRAVITY + body("arm", [0.3, 0, 0]) + joint("revolute", "pin", "ground", "arm", [0, 0, 0], Z)
-MESH = """gravity = [0, 0, -9.81]
-[material.m]
-{law}E = 1e8
-nu = 0.3
-density = 1000
-[region."*"]
-material = "m"
-damping = 1e-4
-[[motion]]
-kind = "fixed"
-name = "root"
-on = "root"
-[[load]]
-kind = "force"
-name = "shake"
-on = "tip"
-force = [0, 0, {pull}]
-history = {{t = [0, 0.01, 0.03, 1], value = [0, 1, -1, 0]}}
-"""
+J2 = 'kind = "j2"\nyield = 2e4\nhardening = 1e6\n'
+SHAKEN = "history = {t = [0, 0.01, 0.03, 1], value = [0, 1, -1, 0]}\n"
+STATIC = "steps = 30\n[solver]\ntolerance = 1e-10\n"
+
+
+def solid(gravity, E, held, law="", damping="damping = 1e-4\n"):
+    return (f'gravity = [0, 0, {gravity}]\n[material.m]\n{law}E = {E}\nnu = 0.3\ndensity = 1000\n[region."*"]\nmaterial = "m"\n{damping}'
+            f'[[motion]]\nkind = "fixed"\nname = "{held}"\non = "{held}"\n')
+
+
+def bar(law="", damping="damping = 1e-4\n"):
+    return solid(-9.81, 1e8, "root", law, damping)
+
+
+def pull(force, on="tip"):
+    return f'[[load]]\nkind = "force"\nname = "shake"\non = "{on}"\nforce = {force}\n'
+
+
 END = "[time]\nend = {end}\nstep = {step}\n[output]\ninterval = {interval}\n[solver]\ntolerance = 1e-10\n"
 
 
@@ -58,10 +57,10 @@ SCENES = {
         joint("revolute", "A0", "ground", "crank", [0, 0, 0], Z) + joint("revolute", "B0", "crank", "coupler", [0, 1, 0], Z) +
         joint("revolute", "A1", "ground", "rocker", [1, 0, 0], Z) + joint("revolute", "B1", "rocker", "coupler", [1, 1, 0], Z) +
         '[[initial]]\non = ["crank"]\nspin = [0, 0, -3]\n' + short(), "", [1]),
-    "flexible": (MESH.format(law="", pull=-200) + short(1e-3), "bar.h5", [1, 2]),
-    "plastic": (MESH.format(law='kind = "j2"\nyield = 2e4\nhardening = 1e6\n', pull=-400) + short(1e-3), "bar.h5", [1]),
+    "flexible": (bar() + pull([0, 0, -200]) + SHAKEN + short(1e-3), "bar.h5", [1, 2]),
+    "plastic": (bar(J2) + pull([0, 0, -400]) + SHAKEN + short(1e-3), "bar.h5", [1]),
     "parallel": (
-        MESH.format(law="", pull=-200) + body("bob", [1, 0.05, -0.3]) +
+        bar() + pull([0, 0, -200]) + SHAKEN + body("bob", [1, 0.05, -0.3]) +
         joint("spherical", "hang", "tip", "bob", [1, 0.05, 0.05]) + short(1e-3), "bar.h5", [3, 2]),
 }
 
@@ -91,34 +90,20 @@ SCENES |= {
         CONTACT + short(2e-3), "", [1, 2]),
     "gauss": (PENDULUM + body("bob", [0.6, -0.3, 0]) + joint("spherical", "link", "arm", "bob", [0.6, 0, 0]) +
               short(2e-2).replace("[time]\n", '[time]\nintegrator = "gauss"\n'), "", [1]),
-    "static, plastic": (MESH.format(law='kind = "j2"\nyield = 2e4\nhardening = 1e6\n', pull=-40).replace("damping = 1e-4\n", "") +
-                        '[time]\nanalysis = "static"\nend = 0.01\nsteps = 30\n[solver]\ntolerance = 1e-10\n', "bar.h5", [1]),
-    "path": (MESH.format(law="", pull=-200).replace("damping = 1e-4\n", "").split("history")[0] +
-             '[time]\nanalysis = "path"\nsteps = 30\n[solver]\ntolerance = 1e-10\n', "bar.h5", [1]),
-    "modes": (MESH.format(law="", pull=-200).split("[[load]]")[0] + '[time]\nanalysis = "modes"\nmodes = 12\n', "bar.h5", [1]),
+    "static, plastic": (bar(J2, "") + pull([0, 0, -40]) + SHAKEN + '[time]\nanalysis = "static"\nend = 0.01\n' + STATIC, "bar.h5", [1]),
+    "path": (bar("", "") + pull([0, 0, -200]) + '[time]\nanalysis = "path"\n' + STATIC, "bar.h5", [1]),
+    "modes": (bar() + '[time]\nanalysis = "modes"\nmodes = 12\n', "bar.h5", [1]),
 }
 
 
 # Two blocks of other meshes, "high" on "low", that rub on each other or are tied.  On ranks such runs are solved by `direct`, whose last bits
 # differ from run to run, so that nothing is equal bit by bit.
-BLOCKS = """gravity = [0, 0, -200]
-[material.m]
-E = 1e7
-nu = 0.3
-density = 1000
-[region."*"]
-material = "m"
-damping = 1e-4
-[[motion]]
-kind = "fixed"
-name = "base"
-on = "base"
-"""
+BLOCKS = solid(-200, 1e7, "base")
 SCENES |= {
     "surface contact": (BLOCKS + '[[contact]]\nname = "rub"\na = "low"\nb = "high"\nfriction = 0.3\n'
                         '[[initial]]\non = ["high"]\nvelocity = [0.4, 0.1, -0.1]\n' + short(1e-3), "blocks.h5", [1]),
-    "tie": (BLOCKS + '[[tie]]\nname = "weld"\na = "low"\nb = "high"\n[[load]]\nkind = "force"\nname = "shake"\non = "top"\nforce = [300, 0, 0]\n'
-            "history = {t = [0, 0.01, 0.03, 1], value = [0, 1, -1, 0]}\n" + short(1e-3), "blocks.h5", [1]),
+    "tie": (BLOCKS + '[[tie]]\nname = "weld"\na = "low"\nb = "high"\n' + pull([300, 0, 0], "top") +
+            SHAKEN + short(1e-3), "blocks.h5", [1]),
 }
 
 

@@ -130,9 +130,7 @@ class Balls final : public Contribution, public Equations, public Constraining, 
   }
   std::vector<Output> outputs() const override { return {}; }
   void observe(const Sight&) override {}
-  void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override {
-    report.emplace_back("layouts", fmt::format("{}", layouts_));
-  }
+  void add_to_report(Json& run) const override { run.add("layouts", layouts_); }
 
  private:
   struct Ball {

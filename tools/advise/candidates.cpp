@@ -17,7 +17,7 @@
 namespace hilo {
 namespace {
 
-using Json = nlohmann::json;
+using Parsed = nlohmann::json;
 
 /// hilo-solve beside this program.
 std::string solver() {
@@ -27,13 +27,13 @@ std::string solver() {
   return !error && std::filesystem::exists(beside) ? beside.string() : "hilo-solve";
 }
 
-Json json_of_file(const std::string& path) {
+Parsed json_of_file(const std::string& path) {
   std::ifstream file(path);
-  return file ? Json::parse(file, nullptr, false) : Json();
+  return file ? Parsed::parse(file, nullptr, false) : Parsed();
 }
 
 bool is_complete(const std::string& name) {
-  const Json j = json_of_file(name + ".json");
+  const Parsed j = json_of_file(name + ".json");
   return j.is_object() && j.contains("complete") && j["complete"] == true && std::filesystem::exists(name + ".h5");
 }
 
@@ -202,7 +202,7 @@ bool Candidates::take(const std::string& name, const Request& request, const Bey
     read(c, name);
   } catch (const Error&) {
     return false;
-  } catch (const Json::exception&) {
+  } catch (const Parsed::exception&) {
     return false;
   }
   done_[name] = std::move(c);
@@ -253,17 +253,17 @@ bool Candidates::is_beyond(const std::string& name, const Beyond& beyond) const 
 void Candidates::read(Candidate& c, const std::string& name) const {
   RunFile run(c.run);
   c.values = values_of(run);
-  const Json j = json_of_file(name + ".json");
+  const Parsed j = json_of_file(name + ".json");
   if (!is_complete(name)) c.ended = run.series("energy").t.back();
   c.seconds = j.value("processor_seconds", 0.0), c.unknowns = j.value("unknowns", 0.0);
   const double end = c.ended > 0 ? c.ended : c.end;
   c.cost = c.seconds * (end > 0 ? scene_.table("time").number("end") / end : 1);
   for (size_t r = 0; r < names().size(); ++r) {
-    for (const Json& b : j.value("beyond_linear", Json::array()))
+    for (const Parsed& b : j.value("beyond_linear", Parsed::array()))
       if (is_of(b.at("region"), names()[r])) c.beyond.emplace(r, b.at("said"));
     if (c.levels[r] != Level::linear && c.levels[r] != Level::stiffening) continue;
     const auto each = [&](const char* measure, auto&& take) {
-      const Json by_body = j.value(measure, Json::object());
+      const Parsed by_body = j.value(measure, Parsed::object());
       for (const auto& [body, value] : by_body.items())
         if (is_of(body, names()[r])) take(value.template get<double>());
     };

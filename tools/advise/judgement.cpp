@@ -124,7 +124,8 @@ void Judgement::find_base() {
   const double end = all.scene().table("time").number("end");
   for (const QuantityValue& v : a.base->values)
     if (!v.why.empty())
-      throw Error("", v.why, v.of.starts_with("von Mises") ? fmt::format("output.interval = {:.2g}: fields at 50 instants", end / 50) : "");
+      throw Error("", v.why,
+                  v.measured == Measured::stress ? fmt::format("output.interval = {:.2g}: fields at 50 instants", end / 50) : "");
   window_ = window_of(*a.base);
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace hilo {
 namespace {
@@ -97,7 +96,7 @@ std::string told_of_raw(const Advice& a) {
     if (!c->failure.empty() || c->unknowns >= a.chosen->unknowns || difference(*c, *a.reference, &in) <= 1) continue;
     const auto& values = a.reference->values;
     const auto found = std::find_if(values.begin(), values.end(), [&](const QuantityValue& v) { return v.name == in; });
-    if (found == values.end() || found->of.find(", raw") == std::string::npos || (lost && lost != &*found)) return "";
+    if (found == values.end() || found->measured != Measured::raw_acceleration || (lost && lost != &*found)) return "";
     lost = &*found;
   }
   return lost ? fmt::format("; smaller models lose \"{}\" alone: a raw acceleration holds all frequencies (give it a cfc)", lost->name)
@@ -132,15 +131,19 @@ std::string report_text(const Candidates& all, const Advice& a) {
 }
 
 std::string report_json(const Candidates& all, const Advice& a) {
-  using Json = nlohmann::ordered_json;
   double step = 0;
   for (size_t k = 0; k < a.step.size(); ++k) step = std::max(step, std::abs(a.step[k]) / a.reference->values[k].allowed);
-  const auto rows = [](const Table& t) { return Json::parse(t.json()); };
-  return Json{{"step_over_allowed", step},        {"doubt_over_allowed", a.doubt},    {"modes_at_most_over_allowed", a.modes_at_most},
-              {"checked", a.reference != a.base}, {"all_cells_seconds", a.all_cells}, {"spent_seconds", all.spent()},
-              {"quantities", rows(budget(a))},    {"regions", rows(regions(all, a))}, {"models", rows(models(all, a))}}
-             .dump(2) +
-         "\n";
+  Json out = Json::object(Json::In::lines);
+  out.add("step_over_allowed", step);
+  out.add("doubt_over_allowed", a.doubt);
+  out.add("modes_at_most_over_allowed", a.modes_at_most);
+  out.add("checked", a.reference != a.base);
+  out.add("all_cells_seconds", a.all_cells);
+  out.add("spent_seconds", all.spent());
+  out.add("quantities", budget(a).json());
+  out.add("regions", regions(all, a).json());
+  out.add("models", models(all, a).json());
+  return out.text() + "\n";
 }
 
 std::string models_csv(const Candidates& all, const Advice& a) {

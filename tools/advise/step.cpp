@@ -90,7 +90,7 @@ void Judgement::refuse_step() const {
   throw Error(
       time.where("step"),
       fmt::format("the step alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.step[k]), v.unit, v.name, v.allowed, v.unit),
-      v.of.find(", raw") != std::string::npos
+      v.measured == Measured::raw_acceleration
           ? "a raw acceleration holds all frequencies: give it a cfc"
           : fmt::format("time.step = {:.2g}, or {}", time.number("step") * std::sqrt(most_step / 2 / step_over(k)), or_else));
 }

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <numeric>
 
+#include "base/joined.hpp"
 #include "import/imported.hpp"
 
 namespace hilo {
@@ -45,8 +45,7 @@ class Finding {
     }
     first_.push_back(0);
     for (const Shell& s : shells_) first_.push_back(first_.back() + m_.cell(s.cell).size());
-    root_.resize(first_.back());
-    std::iota(root_.begin(), root_.end(), size_t{0});
+    joined_ = Joined<size_t>(first_.back());
   }
 
   void run(std::map<std::int64_t, bool>& turned, std::map<std::int64_t, std::vector<Sheets::Part>>& at, std::vector<std::int64_t>& folded) {
@@ -117,17 +116,13 @@ class Finding {
     }
   }
 
-  size_t find(size_t slot) {
-    while (root_[slot] != slot) slot = root_[slot] = root_[root_[slot]];
-    return slot;
-  }
   size_t slot(size_t shell, int local) const { return first_[shell] + static_cast<size_t>(local); }
   void join(const Side& a, const Side& b) {
     for (int which = 0; which < 3; ++which) {
       if (which == 2 && (first_[a.shell + 1] - first_[a.shell] == static_cast<size_t>(shells_[a.shell].corners) ||
                          first_[b.shell + 1] - first_[b.shell] == static_cast<size_t>(shells_[b.shell].corners)))
         continue;
-      root_[find(slot(a.shell, local(a, which)))] = find(slot(b.shell, local(b, which)));
+      joined_.join(slot(a.shell, local(a, which)), slot(b.shell, local(b, which)));
     }
   }
 
@@ -135,7 +130,7 @@ class Finding {
     std::map<std::int64_t, std::map<size_t, std::vector<size_t>>> groups;  // node, root: shells
     for (size_t s = 0; s < shells_.size(); ++s) {
       const auto n = m_.cell(shells_[s].cell);
-      for (size_t k = 0; k < n.size(); ++k) groups[n[k]][find(first_[s] + k)].push_back(s);
+      for (size_t k = 0; k < n.size(); ++k) groups[n[k]][joined_.root(first_[s] + k)].push_back(s);
     }
     for (const auto& [node, by_root] : groups) {
       std::map<size_t, Sheets::Part> parts;  // by the first shell
@@ -166,7 +161,8 @@ class Finding {
   std::vector<Shell> shells_;
   std::vector<bool> turned_;
   std::map<Edge, std::vector<Side>> edges_;
-  std::vector<size_t> first_, root_;  // of the nodes of all shells, one after the other
+  std::vector<size_t> first_;  // of the nodes of all shells, one after the other
+  Joined<size_t> joined_{0};   // these nodes
 };
 
 }  // namespace

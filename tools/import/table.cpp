@@ -72,8 +72,6 @@ int tables_in(const std::string& scene, const std::string& word) {
   return n;
 }
 
-std::string vec_json(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
-
 }  // namespace
 
 std::string import_table(const Imported& in, const std::vector<std::string>& scenes) {
@@ -119,37 +117,44 @@ std::string import_table(const Imported& in, const std::vector<std::string>& sce
 
 std::string import_json(const Imported& in, const std::string& file, const std::string& output, const std::vector<std::string>& scenes) {
   const Mesh& m = in.mesh;
+  constexpr auto lines = Json::In::lines;
+  Json out = Json::object(lines), regions = Json::list(lines), cases = Json::list(lines);
   const auto rows = rows_of(m);
-  std::string s = fmt::format("{{\n  \"file\": {},\n  \"mesh\": {},\n  \"nodes\": {},\n  \"cells\": {},\n  \"regions\": [", json_text(file),
-                              json_text(output), m.n_nodes(), m.n_cells());
   for (size_t i = 0; i < rows.size(); ++i) {
     const auto& r = rows[i];
-    std::string by;
+    Json by = Json::object();
     for (int k = 0; k < most_shapes; ++k)
-      if (r.by_shape[k]) by += fmt::format("{}\"{}\": {}", by.empty() ? "" : ", ", info(static_cast<Shape>(k)).name, r.by_shape[k]);
-    s += fmt::format(
-        "{}\n    {{\"name\": {}, \"cells\": {}, \"shapes\": {{{}}}, \"volume\": {}, \"length\": {}, \"box\": [{}, {}], \"quality_min\": "
-        "{}, \"quality_mean\": {}}}",
-        i ? "," : "", json_text(m.region_name[i]), r.cells, by, r.volume, r.length, vec_json(r.low), vec_json(r.high),
-        r.judged ? fmt::format("{}", r.worst) : "null", r.judged ? fmt::format("{}", r.sum / static_cast<double>(r.judged)) : "null");
+      if (r.by_shape[k]) by.add(info(static_cast<Shape>(k)).name, r.by_shape[k]);
+    regions.append({{"name", m.region_name[i]},
+                    {"cells", r.cells},
+                    {"shapes", std::move(by)},
+                    {"volume", r.volume},
+                    {"length", r.length},
+                    {"box", Json::list_of(std::array{r.low, r.high}, [](const Vec3& x) { return Json::list_of(x); })},
+                    {"quality_min", r.judged ? Json(r.worst) : nullptr},
+                    {"quality_mean", r.judged ? Json(r.sum / static_cast<double>(r.judged)) : nullptr}});
   }
-  s += "\n  ],\n  \"sets\": [";
-  const auto sets = sets_of(m);
-  for (size_t i = 0; i < sets.size(); ++i)
-    s += fmt::format("{}\n    {{\"name\": {}, \"kind\": \"{}\", \"count\": {}}}", i ? "," : "", json_text(sets[i].name), sets[i].kind,
-                     sets[i].count);
-  if (!in.cases.empty()) s += "\n  ],\n  \"subcases\": [";
   for (size_t i = 0; i < in.cases.size(); ++i)
-    s += fmt::format("{}\n    {{\"number\": {}, \"title\": {}, \"scene\": {}}}", i ? "," : "", in.cases[i].number,
-                     json_text(in.cases[i].title), i < scenes.size() && !scenes[i].empty() ? json_text(scenes[i]) : "null");
-  s += "\n  ],\n  \"notes\": [";
-  for (size_t i = 0; i < in.notes.size(); ++i) s += fmt::format("{}\n    {}", i ? "," : "", json_text(in.notes[i]));
-  s += "\n  ],\n  \"not_read\": [";
-  for (size_t i = 0; i < in.not_read.size(); ++i)
-    s += fmt::format("{}\n    {{\"what\": {}, \"count\": {}, \"place\": {}, \"output\": {}, \"loss\": {}}}", i ? "," : "",
-                     json_text(in.not_read[i].what), in.not_read[i].count, json_text(in.not_read[i].place), in.not_read[i].output,
-                     json_text(loss_of(in.not_read[i])));
-  return s + "\n  ]\n}\n";
+    cases.append({{"number", in.cases[i].number},
+                  {"title", in.cases[i].title},
+                  {"scene", i < scenes.size() && !scenes[i].empty() ? Json(scenes[i]) : nullptr}});
+  out.add("file", file), out.add("mesh", output), out.add("nodes", m.n_nodes()), out.add("cells", m.n_cells());
+  out.add("regions", std::move(regions));
+  out.add("sets", Json::list_of(
+                      sets_of(m),
+                      [](const auto& s) -> Json {
+                        return {{"name", s.name}, {"kind", s.kind}, {"count", s.count}};
+                      },
+                      lines));
+  if (!in.cases.empty()) out.add("subcases", std::move(cases));
+  out.add("notes", Json::list_of(in.notes, {}, lines));
+  out.add("not_read", Json::list_of(
+                          in.not_read,
+                          [](const NotRead& n) -> Json {
+                            return {{"what", n.what}, {"count", n.count}, {"place", n.place}, {"output", n.output}, {"loss", loss_of(n)}};
+                          },
+                          lines));
+  return out.text() + "\n";
 }
 
 }  // namespace hilo

@@ -30,11 +30,14 @@ std::string line(const std::string& weights, const PartReport& r) {
       weights, r.flexible_balance, r.rigid_balance, r.cut, r.flexible_cut, sum(r.pieces), sum(r.flexible_pieces));
 }
 
-std::string json_of(const PartReport& r) {
-  return fmt::format(
-      "{{\"flexible_balance\": {:.6f}, \"rigid_balance\": {:.6f}, \"cut\": {}, \"flexible_cut\": {}, \"speed_up\": {:.4f}, "
-      "\"pieces\": {}, \"flexible_pieces\": {}}}",
-      r.flexible_balance, r.rigid_balance, r.cut, r.flexible_cut, r.speed_up, sum(r.pieces), sum(r.flexible_pieces));
+Json json_of(const PartReport& r) {
+  return {{"flexible_balance", {r.flexible_balance, 7}},
+          {"rigid_balance", {r.rigid_balance, 7}},
+          {"cut", r.cut},
+          {"flexible_cut", r.flexible_cut},
+          {"speed_up", {r.speed_up, 5}},
+          {"pieces", sum(r.pieces)},
+          {"flexible_pieces", sum(r.flexible_pieces)}};
 }
 
 std::string other_name(const Division& d) { return d.weights == "weighted" ? "uniform" : "weighted"; }
@@ -49,10 +52,15 @@ std::string division_text(const Division& d, const CellGraph& graph) {
 }
 
 std::string division_json(const Division& d, const CellGraph& graph, const std::string& output) {
-  return fmt::format(
-      "{{\n  \"output\": {},\n  \"n_parts\": {},\n  \"weights\": {},\n  \"joints\": {},\n  \"{}\": {},\n{}  \"parts\": {}\n}}\n",
-      json_text(output), d.report.cells.size(), json_text(d.weights), graph.joints, d.weights, json_of(d.report),
-      d.other ? fmt::format("  \"{}\": {},\n", other_name(d), json_of(*d.other)) : "", table_of(d.report).json());
+  Json out = Json::object(Json::In::lines);
+  out.add("output", output);
+  out.add("n_parts", d.report.cells.size());
+  out.add("weights", d.weights);
+  out.add("joints", graph.joints);
+  out.add(d.weights, json_of(d.report));
+  if (d.other) out.add(other_name(d), json_of(*d.other));
+  out.add("parts", table_of(d.report).json());
+  return out.text() + "\n";
 }
 
 Table comparison(const CellGraph& graph, const Mesh& mesh, int most) {

@@ -27,10 +27,10 @@ std::string Summary::text() const {
 }
 
 std::string Summary::json() const {
-  std::vector<std::string> items;
-  for (const auto& f : facts) items.push_back(fmt::format("{}: {}", json_text(f.key), f.is_number ? f.value : json_text(f.value)));
-  for (const auto& [key, table] : tables) items.push_back(fmt::format("{}: {}", json_text(key), table.json()));
-  return fmt::format("{{\n  {}\n}}\n", fmt::join(items, ",\n  "));
+  Json out = Json::object(Json::In::lines);
+  for (const auto& f : facts) out.add(f.key, f.is_number ? Json::number(f.value) : f.value);
+  for (const auto& [key, table] : tables) out.add(key, table.json());
+  return out.text() + "\n";
 }
 
 Summary summary_of_file(const std::string& path) {

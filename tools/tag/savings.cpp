@@ -83,9 +83,12 @@ std::string savings_text(const Savings& s) {
 }
 
 std::string savings_json(const Savings& s, const std::string& output) {
-  return fmt::format(
-      "{{\n  \"output\": {},\n  \"unknowns\": {{\"before\": {}, \"after\": {}}},\n  \"bodies\": {},\n  \"regions\": {}\n}}\n",
-      output.empty() ? "null" : json_text(output), s.before, s.after, s.bodies, s.regions.json());
+  Json out = Json::object(Json::In::lines);
+  out.add("output", output.empty() ? Json(nullptr) : output);
+  out.add("unknowns", {{"before", s.before}, {"after", s.after}});
+  out.add("bodies", s.bodies);
+  out.add("regions", s.regions.json());
+  return out.text() + "\n";
 }
 
 }  // namespace hilo

@@ -31,7 +31,7 @@ void DirectSolver::structure(const Cliques& cliques, const BlockMap& map) {
 SolveReport DirectSolver::solve(std::span<const double> b, std::span<double> x, double) {
   if (!factored_) {
     matrix_->assemble();
-    if (const std::string problem = factor(); !problem.empty()) return {false, 1, 0, problem};
+    if (const SolveReport made = factor(); !made.ok) return made;
     factored_ = true;
   }
   to_owned(*shared_, b, b_);
@@ -42,7 +42,7 @@ SolveReport DirectSolver::solve(std::span<const double> b, std::span<double> x, 
     check(MatMult(matrix_->mat(), x_, r_));
     check(VecAYPX(r_, -1, b_));
     report.residual = norm > 0 ? max_norm(r_) / norm : max_norm(r_);
-    if (!std::isfinite(report.residual)) return {false, report.residual, 0, "the matrix is singular to working precision"};
+    if (!std::isfinite(report.residual)) return SolveReport::singular(" to working precision", report.residual);
     if (report.residual < 1e-12 || pass == 2) break;
     check(MatSolve(factor_, r_, dx_));
     check(VecAXPY(x_, 1, dx_));
@@ -63,8 +63,8 @@ std::optional<int> DirectSolver::eigenvalues_below_zero(int first_row) const {
 
 std::string DirectSolver::name() const { return size() > 1 ? fmt::format("direct (MUMPS, {} ranks)", size()) : "direct (MUMPS)"; }
 
-/// A factor with room for delayed pivots: "" or what went wrong.
-std::string DirectSolver::analyse() {
+/// A factor with room for delayed pivots, or what went wrong.
+SolveReport DirectSolver::analyse() {
   MatFactorInfo info;
   check(MatFactorInfoInitialize(&info));
   check(MatGetFactor(matrix_->mat(), MATSOLVERMUMPS, MAT_FACTOR_LU, &factor_));
@@ -75,19 +75,19 @@ std::string DirectSolver::analyse() {
   check(MatMumpsSetCntl(factor_, 1, 0.01));  // threshold of partial pivoting: multipliers have no diagonal
   check(MatLUFactorSymbolic(factor_, matrix_->mat(), nullptr, nullptr, &info));
   const auto error = infog(1);
-  return error < 0 ? failure("analysis", error) : "";
+  return error < 0 ? failure("analysis", error) : SolveReport{};
 }
 
-/// "" or what went wrong.  The analysis is kept, as the pattern does not change, until a factorisation fails: PETSc does nothing with a
+/// The analysis is kept, as the pattern does not change, until a factorisation fails: PETSc does nothing with a
 /// factor that has failed once, whatever is asked of it.
-std::string DirectSolver::factor() {
+SolveReport DirectSolver::factor() {
   const Stopwatch watch(set_up_);
   PetscReal norm = 0;  // MUMPS asks for memory without end where numbers are not finite
   check(MatNorm(matrix_->mat(), NORM_FROBENIUS, &norm));
-  if (!std::isfinite(norm)) return "the matrix is not finite";
+  if (!std::isfinite(norm)) return SolveReport::failed("the matrix is not finite");
   for (;; room_ *= 2) {
     if (!factor_)
-      if (const std::string problem = analyse(); !problem.empty()) return check(MatDestroy(&factor_)), problem;
+      if (const SolveReport made = analyse(); !made.ok) return check(MatDestroy(&factor_)), made;
     MatFactorInfo info;
     check(MatFactorInfoInitialize(&info));
     check(MatLUFactorNumeric(factor_, matrix_->mat(), &info));
@@ -95,21 +95,21 @@ std::string DirectSolver::factor() {
     check(MatMumpsGetInfo(factor_, 16, &megabytes));
     factor_bytes_ = 1e6 * megabytes;
     const auto error = infog(1), null = infog(28);
-    if (error >= 0) return null > 0 ? fmt::format("the matrix is singular ({} null pivot{})", null, null > 1 ? "s" : "") : "";
+    if (error >= 0) return null > 0 ? SolveReport::singular(fmt::format(" ({} null pivot{})", null, null > 1 ? "s" : "")) : SolveReport{};
     const bool wants_room = error == -8 || error == -9 || error == -14 || error == -15 || error == -17 || error == -20;
-    const std::string problem = error == -10                         ? "the matrix is singular"
-                                : wants_room && room_ < largest_room ? ""
-                                                                     : failure("factorisation", error);
+    const SolveReport made = error == -10                         ? SolveReport::singular()
+                             : wants_room && room_ < largest_room ? SolveReport{}
+                                                                  : failure("factorisation", error);
     check(MatDestroy(&factor_));
-    if (!problem.empty()) return problem;
+    if (!made.ok) return made;
   }
 }
 
 /// Memory is an Error, seen by all ranks alike; anything else a failed solve.
-std::string DirectSolver::failure(const char* phase, PetscInt error) const {
+SolveReport DirectSolver::failure(const char* phase, PetscInt error) const {
   if (error == -5 || error == -7 || error == -9 || error == -13 || error == -19)
     throw Error("MUMPS", fmt::format("out of memory in the {}", phase), "use more ranks, or solver.kind = \"iterative\"", Exit::resources);
-  return fmt::format("MUMPS {} failed: INFOG(1) = {}, INFOG(2) = {}", phase, error, infog(2));
+  return SolveReport::failed(fmt::format("MUMPS {} failed: INFOG(1) = {}, INFOG(2) = {}", phase, error, infog(2)));
 }
 
 PetscInt DirectSolver::infog(PetscInt i) const {

@@ -26,9 +26,9 @@ class DirectSolver final : public KktSolver {
   BlockMatrix& matrix() { return *matrix_; }
 
  private:
-  std::string analyse();
-  std::string factor();
-  std::string failure(const char* phase, PetscInt error) const;
+  SolveReport analyse();
+  SolveReport factor();
+  SolveReport failure(const char* phase, PetscInt error) const;
   void set(PetscInt control, PetscInt value) { check(MatMumpsSetIcntl(factor_, control, value)); }
   PetscInt infog(PetscInt i) const;
 

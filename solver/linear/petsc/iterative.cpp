@@ -145,13 +145,13 @@ class IterativeSolver final : public KktSolver {
 
   SolveReport set_up_and_attempt() {
     ready_ = false;
-    if (const std::string problem = set_up(); !problem.empty()) return {false, 1, 0, problem};
+    if (const SolveReport made = set_up(); !made.ok) return made;
     system_->inverse().take_iterations();  // those of the set-up
     const SolveReport report = attempt(system_->inverse().most_iterations());
     ready_ = report.ok;
     return report;
   }
-  std::string set_up() {
+  SolveReport set_up() {
     const Stopwatch watch(set_up_seconds_);
     return system_->set_up();
   }

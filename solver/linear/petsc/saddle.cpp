@@ -47,10 +47,11 @@ void Saddle::add_diagonal(int block, const double d[3]) {
     matrix_->add_diagonal(block, d);
 }
 
-std::string Saddle::set_up() {
-  if (!inverse_->set_up()) return "the flexible block is singular";
-  if (factor_schur()) return "";
-  return inverse_->has_failed() ? inverse_->name() + " does not converge" : "the matrix is singular (bodies and joints)";
+SolveReport Saddle::set_up() {
+  if (!inverse_->set_up()) return {.ok = false, .residual = 1, .message = "the flexible block is singular", .is_singular = true};
+  if (factor_schur()) return {};
+  return inverse_->has_failed() ? SolveReport::failed(inverse_->name() + " does not converge")
+                                : SolveReport::singular(" (bodies and joints)");
 }
 
 /// Z = F~^-1 B and S = D - C Z.  False when S is singular.

@@ -8,8 +8,6 @@
 // C = B^T, D = 0: the constraint preconditioner [keller-gould-wathen-2000]).  Cost: one application of F~ per dense unknown that touches a
 // flexible node (6 per attached body, 3 per multiplier block) and set-up, and one per iteration.
 #pragma once
-#include <string>
-
 #include "linear/petsc/coupling.hpp"
 #include "linear/petsc/flexible.hpp"
 #include "linear/petsc/schur_factor.hpp"
@@ -27,8 +25,8 @@ class Saddle {
   void add_diagonal(int block, const double d[3]);
   void assemble() { matrix_->assemble(), coupling_.assemble(); }
 
-  /// Make the preconditioner for the matrix as it is.  What is wrong, or nothing.
-  std::string set_up();
+  /// Make the preconditioner for the matrix as it is.
+  SolveReport set_up();
   /// y = A x.
   void multiply(Vec x, Vec y);
   /// y = P^-1 x.

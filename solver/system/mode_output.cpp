@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/natural_modes.hpp"
+#include "system/mode_output.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -8,7 +8,7 @@ namespace hilo {
 
 double NaturalMode::frequency() const { return std::copysign(std::sqrt(std::abs(pole2)), pole2) / (2 * std::numbers::pi); }
 
-void NaturalModes::observe(const Sight& at) {
+void ModeOutput::observe(const Sight& at) {
   std::vector<double>& out = at.end;
   out.push_back(now.frequency());
   out.push_back(now.damping);

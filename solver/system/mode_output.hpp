@@ -22,9 +22,9 @@ struct NaturalMode {
 };
 
 /// Takes part in no equation: it holds the row that is written next.
-class NaturalModes final : public Contribution, public Observer {
+class ModeOutput final : public Contribution, public Observer {
  public:
-  explicit NaturalModes(int most) : most_(most) {}
+  explicit ModeOutput(int most) : most_(most) {}
   NaturalMode now;
   std::vector<Output> outputs() const override {
     return {{.group = "", .name = "mode", .n_end = 10},          {.group = "", .name = "participation", .n_end = 6},
