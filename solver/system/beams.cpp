@@ -279,7 +279,7 @@ void Beams::each_cell(const Stage& s, const std::vector<LineForces>& line, bool 
   const bool drags = s.v && lanes.has_alpha;
   poses.slot(s.left), poses.slot(s.end), poses.slot(s.a);
   if (drags) poses.slot(s.v);
-  if (s.before) poses.slot(s.before), poses.slot(s.along);
+  if (s.last) poses.slot(&s.last->before), poses.slot(&s.last->along);
   for (const StagePair& pair : pairs) {
     poses.slot(pair.q1);
     if (pair.of.s == nullptr) poses.slot(pair.q0);
@@ -293,7 +293,7 @@ void Beams::each_cell(const Stage& s, const std::vector<LineForces>& line, bool 
   const auto pose = [&](const Config* q) { return gathered + 24 * poses.slot(q) * W; };
   ArcCall call{};
   call.left = pose(s.left), call.end = pose(s.end), call.a = pose(s.a), call.v = drags ? pose(s.v) : nullptr;
-  if (s.before) call.before = pose(s.before), call.along = pose(s.along);
+  if (s.last) call.before = pose(&s.last->before), call.along = pose(&s.last->along);
   for (int i = 0; i < 3; ++i) call.gravity[i] = points_.gravity[i] * s.load_factor;
   call.slope = s.slope, call.mass_slope = s.mass_slope, call.alpha_slope = s.v ? s.alpha_slope : 0;
   for (const StagePair& pair : pairs) {
