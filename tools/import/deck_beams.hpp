@@ -21,6 +21,7 @@ struct DeckSection {
   double line_mass = 0;                                  // beside that of the material
   std::optional<std::array<double, 2>> shear = {};       // factors along 1 and 2; absent: those of the kind
   std::array<bool, 2> no_shear_strain = {false, false};  // along 1 and 2: as stiff as 1e4 E A
+  std::array<double, 2> shear_centre = {0, 0};           // along 1 and 2 from the centre of area; of "general" and of rectangles
   bool given() const { return !sizes.empty(); }
   /// A, I1, I2, J and shear factors; Error at `place` where no section has these sizes.
   SectionArea area(double nu, const std::string& place) const;
