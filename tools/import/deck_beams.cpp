@@ -103,6 +103,8 @@ DeckSection section_of_rectangles(const std::vector<DeckRectangle>& parts, const
     const bool askew = std::abs(a.I12) > 1e-9 * (a.I1 + a.I2);
     out.I12 = askew ? a.I12 : 0;
     out.shear = {a.shear_1, a.shear_2};
+    const auto clean = [&](double x) { return std::abs(x) < 1e-9 * std::sqrt(a.A) ? 0 : x; };
+    out.shear_centre = {clean(a.s1), clean(a.s2)};
     return out;
   } catch (const Error& e) {
     throw Error(place, std::string("a section of beams: ") + e.what());
@@ -112,14 +114,16 @@ DeckSection section_of_rectangles(const std::vector<DeckRectangle>& parts, const
 bool has_scene_material(const DeckSection& s, const DeckMaterial& m) {
   const bool isotropic = m.elastic() && m.data.E > 0 && m.data.nu > -1 && m.data.density > 0 &&
                          std::abs(shear_modulus(m) * 2 * (1 + m.data.nu) / m.data.E - 1) < 1e-3;
-  return isotropic && s.I12 == 0 && s.line_mass == 0 && std::ranges::all_of(s.sizes, [](const auto& size) { return size.second > 0; });
+  return isotropic && s.I12 == 0 && s.line_mass == 0 && s.shear_centre == std::array{0., 0.} &&
+         std::ranges::all_of(s.sizes, [](const auto& size) { return size.second > 0; });
 }
 
-std::string section_table(const std::string& name, DeckSection s, bool with_material, const DeckMaterial& m, const std::string& units,
-                          double scale, const std::string& place) {
+std::string section_table(const std::string& name, DeckSection s, const DeckSection& beside, const DeckMaterial& m,
+                          const std::string& units, double scale, const std::string& place) {
   const auto power = [](const std::string& key) { return key == "area" ? 2 : key[0] == 'I' || key[0] == 'J' ? 4 : 1; };  // of a length
   for (auto& [key, value] : s.sizes) value *= std::pow(scale, power(key));
   s.I12 *= std::pow(scale, 4);
+  for (double& x : s.shear_centre) x *= scale;
   const double E = m.data.E, G = shear_modulus(m);
   if (!(E > 0) || !(G > 0)) throw Error(place, fmt::format("material {} has no Young's or shear modulus, which a beam needs", m.name));
   const auto si = [&](const char* unit) { return to_si(unit, units); };
@@ -127,7 +131,7 @@ std::string section_table(const std::string& name, DeckSection s, bool with_mate
   const SectionArea area = s.area(m.data.nu, place);
   const double k[2] = {s.no_shear_strain[0] ? stiff_in_shear * E / G : area.shear_1,
                        s.no_shear_strain[1] ? stiff_in_shear * E / G : area.shear_2};
-  if (with_material) {
+  if (has_scene_material(s, m) && has_scene_material(beside, m)) {
     out += fmt::format("kind = \"{}\"\n", s.kind);
     for (const auto& [key, value] : s.sizes) out += fmt::format("{} = {}\n", key, toml_number(value * std::pow(si("m"), power(key))));
     if (s.shear || s.no_shear_strain[0] || s.no_shear_strain[1]) out += fmt::format("shear = {}\n", toml_list({k[0], k[1]}));
@@ -140,10 +144,15 @@ std::string section_table(const std::string& name, DeckSection s, bool with_mate
                 "a rod where only the area is given");
   const double N = si("Pa") * si("m^2"), Nm2 = si("Pa") * si("m^4"), rho = m.data.density > 0 ? m.data.density : 0;
   const double inertia = si("kg/m^3") * si("m^4");
-  out += fmt::format("kind = \"matrix\"\nstiffness = {}\n", toml_list({k[0] * G * area.A * N, k[1] * G * area.A * N, E * area.A * N}));
-  const double b = -E * s.I12 * Nm2;
-  out += s.I12 == 0 ? fmt::format("bending = {}\n", toml_list({E * area.I1 * Nm2, E * area.I2 * Nm2, G * J * Nm2}))
-                    : fmt::format("bending = {}\n", toml_list({E * area.I1 * Nm2, b, 0, b, E * area.I2 * Nm2, 0, 0, 0, G * J * Nm2}));
+  const double A1 = k[0] * G * area.A * N, A2 = k[1] * G * area.A * N;
+  const double s1 = s.shear_centre[0] * si("m"), s2 = s.shear_centre[1] * si("m");
+  const double b = -E * s.I12 * Nm2, twist = G * J * Nm2 + A1 * s2 * s2 + A2 * s1 * s1;
+  out += fmt::format("kind = \"matrix\"\nstiffness = {}\n", toml_list({A1, A2, E * area.A * N}));
+  const auto is_apart = [](const DeckSection& section) { return section.shear_centre != std::array{0., 0.}; };
+  if (is_apart(s) || is_apart(beside)) out += fmt::format("coupling = {}\n", toml_list({0, 0, -A1 * s2, 0, 0, A2 * s1, 0, 0, 0}));
+  out += s.I12 == 0 && beside.I12 == 0
+             ? fmt::format("bending = {}\n", toml_list({E * area.I1 * Nm2, E * area.I2 * Nm2, twist}))
+             : fmt::format("bending = {}\n", toml_list({E * area.I1 * Nm2, b, 0, b, E * area.I2 * Nm2, 0, 0, 0, twist}));
   out +=
       fmt::format("line_mass = {}\ninertia = {}\n", toml_number(rho * area.A * si("kg/m^3") * si("m^2") + s.line_mass * si("kg") / si("m")),
                   toml_list({rho * area.I2 * inertia, rho * area.I1 * inertia, rho * s.I12 * inertia}));

@@ -21,6 +21,7 @@ struct DeckSection {
   double line_mass = 0;                                  // beside that of the material
   std::optional<std::array<double, 2>> shear = {};       // factors along 1 and 2; absent: those of the kind
   std::array<bool, 2> no_shear_strain = {false, false};  // along 1 and 2: as stiff as 1e4 E A
+  std::array<double, 2> shear_centre = {0, 0};           // along 1 and 2 from the centre of area; of "general" and of rectangles
   bool given() const { return !sizes.empty(); }
   /// A, I1, I2, J and shear factors; Error at `place` where no section has these sizes.
   SectionArea area(double nu, const std::string& place) const;
@@ -39,8 +40,9 @@ DeckSection section_of_rectangles(const std::vector<DeckRectangle>& parts, const
 
 /// Whether the section is written with a material of the scene; else as stiffnesses, for what the material or its kind cannot say.
 bool has_scene_material(const DeckSection& section, const DeckMaterial& material);
-/// [section.NAME] in SI, its lengths times `scale` as those of the geometry; Error at `place` where the material says no moduli.
-std::string section_table(const std::string& name, DeckSection section, bool with_material, const DeckMaterial& material,
+/// [section.NAME] in SI, its lengths times `scale` as those of the geometry, with the keys that `beside`, the other end of a taper or
+/// itself, needs; Error at `place` where the material says no moduli.
+std::string section_table(const std::string& name, DeckSection section, const DeckSection& beside, const DeckMaterial& material,
                           const std::string& units, double scale, const std::string& place);
 
 /// An element between two bodies.

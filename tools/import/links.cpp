@@ -113,13 +113,25 @@ std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, cons
   return f;
 }
 
-bool on_a_line(const std::vector<Vec3>& points) {
+namespace {
+/// Ascending: how far points spread along three axes, squared.
+Vec3 spread(const std::vector<Vec3>& points) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& x : points) mean += x / static_cast<double>(points.size());
   Mat3 S = Mat3::Zero();
   for (const Vec3& x : points) S += (x - mean) * (x - mean).transpose();
-  const Vec3 v = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues();
+  return Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues();
+}
+}  // namespace
+
+bool on_a_line(const std::vector<Vec3>& points) {
+  const Vec3 v = spread(points);
   return !(v[1] > 1e-10 * v[2]);
+}
+
+bool in_a_plane(const std::vector<Vec3>& points) {
+  const Vec3 v = spread(points);
+  return !(v[0] > 1e-10 * v[2]);
 }
 
 std::string sliding_body(const std::string& name, const std::string& joint, const std::string& axis, const std::string& at,

@@ -56,6 +56,8 @@ std::string joints_of_sum(const std::vector<SumTerm>& terms, const std::string& 
 
 /// Whether points lie on a line, or at one place.
 bool on_a_line(const std::vector<Vec3>& points);
+/// Whether they lie in a plane.
+bool in_a_plane(const std::vector<Vec3>& points);
 
 /// A displacement of a node: its number, and its component.
 using Displacement = std::pair<std::int64_t, int>;

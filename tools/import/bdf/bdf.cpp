@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "import/bdf/card.hpp"
+#include "import/links.hpp"
 #include "import/sheets.hpp"
 
 namespace hilo {
@@ -30,6 +31,11 @@ void settle_densities(BdfDeck& deck, Imported& in) {
   for (auto& [id, m] : deck.materials) m.data.density *= deck.mass_factor;
   for (auto& [id, p] : deck.thin) p.section.line_mass *= deck.mass_factor, p.end.line_mass *= deck.mass_factor;
   for (auto& m : deck.masses) m.mass *= deck.mass_factor, m.inertia *= deck.mass_factor;
+  for (auto& m : deck.scalar_masses) {
+    const auto p = deck.mass_of.find(m.property);
+    if (m.property != 0 && p == deck.mass_of.end()) throw Error(m.place, fmt::format("{} {}: no PMASS {}", m.name, m.id, m.property));
+    m.mass = deck.mass_factor * (m.property != 0 ? p->second : m.mass);
+  }
   if (deck.without_density.empty()) return;
   std::string ids;
   int n = 0;
@@ -73,6 +79,21 @@ void join_told(const BdfDeck& deck, const std::vector<BdfCase>& cases, Imported&
   tell_unused(deck.contacts, deck.contact_sums, contact, "BCTSET", in);
   std::set<std::string> notes;
   std::erase_if(in.notes, [&](const std::string& note) { return !notes.insert(note).second; });
+}
+
+/// Shells that have no stiffness in their plane bend as solids do where they lie in one plane; elsewhere no solid stands for them.
+void settle_bending(BdfDeck& deck, Imported& in) {
+  for (auto& [id, p] : deck.thin) {
+    if (!p.bends_only || !p.no_solid.empty()) continue;
+    std::vector<Vec3> x;
+    for (const auto& s : deck.shells)
+      if (s.property == id)
+        for (const auto a : rows(deck, s.nodes, s)) x.push_back(deck.X[static_cast<size_t>(a)]);
+    if (in_a_plane(x))
+      in.notes.push_back(fmt::format("{}: PSHELL {} without MID1 is flat: it is given the stiffness in its plane too", p.place, id));
+    else
+      p.no_solid = "PSHELL without MID1, and not in one plane";
+  }
 }
 
 /// Cells by property, shells as sets of facets, supports as sets of nodes.
@@ -225,6 +246,8 @@ Imported read_bdf(const std::string& path, const ImportOptions& options) {
     deck.property_name[id] = taken.insert(name).second ? name : fmt::format("{}_{}", name, id);
   resolve_axes(deck);
   resolve_ranges(deck);
+  resolve_beams(deck);
+  settle_bending(deck, in);
   resolve_metals(deck, in);
   settle_densities(deck, in);
   const auto& case_lines = entries.case_lines();

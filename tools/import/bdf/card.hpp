@@ -37,6 +37,8 @@ struct BdfBeamPlace {
   Vec3 a, b, up;
 };
 BdfBeamPlace place_of_beam(const BdfDeck& deck, const BdfDeck::Thin& beam);
+/// What BAROR and BEAMOR say of beams that leave it blank.
+void resolve_beams(BdfDeck& deck);
 /// The section of a beam; Error where its property is none of beams.
 const BdfThin& section_of_beam(const BdfDeck& deck, const BdfDeck::Thin& beam);
 /// MATS1 and the tables it names, into the materials.

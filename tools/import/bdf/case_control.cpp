@@ -23,26 +23,32 @@ std::pair<std::string, std::string> parts(const std::string& line) {
   return {word, value};
 }
 
-/// Requests for output, names, and controls of printing: nothing is lost.
+/// A word of case control by its first four letters, which are enough there.
+std::string head_of(const std::string& word) { return word.substr(0, 4); }
+
+/// Requests for output, names, and controls of printing: nothing is lost.  By their first four letters, or whole where others share these.
 bool is_request(const std::string& word) {
-  static const std::set<std::string> requests{
-      "DISPLACEMENT", "DISPLACEMENTS", "DISP",          "PRESSURE", "VECTOR",  "VELOCITY",      "VELO",     "SVELOCITY",
-      "ACCELERATION", "ACCE",          "SACCELERATION", "STRESS",   "STRE",    "STRAIN",        "STRA",     "ELSTRESS",
-      "ELSTRAIN",     "FORCE",         "FORC",          "ELFORCE",  "ELFO",    "SPCFORCES",     "SPCFORCE", "SPCF",
-      "MPCFORCES",    "MPCFORCE",      "MPCF",          "OLOAD",    "OLOA",    "GPFORCE",       "GPFO",     "GPSTRESS",
-      "GPSTRAIN",     "ESE",           "EKE",           "EDE",      "ECHO",    "SUBTITLE",      "LABEL",    "LINE",
-      "MAXLINES",     "SET",           "PAGE",          "OUTPUT",   "SVECTOR", "SDISPLACEMENT", "THERMAL",  "FLUX",
-      "MEFFMASS",     "WEIGHTCHECK",   "GROUNDCHECK",   "TFL",      "SURFACE", "VOLUME",        "STRFIELD", "ID",
-      "TIME",         "CEND",          "DIAG",          "NASTRAN",  "APP",     "SKIP",          "RESULTS",  "BCRESULTS",
-      "ELSDCON",      "GPSDCON",       "VUGRID",        "MODALKE",  "MODALSE", "NLSTRESS",      "ANALYSIS", "ASSIGN",
-      "INIT",         "FORMAT",        "XYPLOT",        "XYPRINT",  "PLOT",    "OTIME",         "OMODES",   "CONTACTRESULTS"};
-  return requests.contains(word) || word.find_first_not_of("0123456789") == std::string::npos;
+  static const std::set<std::string> heads{"DISP", "PRES", "VECT", "VELO", "SVEL", "ACCE", "SACC", "STRE", "STRA", "ELST", "ELSU", "FORC",
+                                           "ELFO", "SPCF", "MPCF", "OLOA", "GPFO", "GPST", "GPKE", "ESE",  "EKE",  "EDE",  "ECHO", "SUBT",
+                                           "LABE", "LINE", "MAXL", "SET",  "PAGE", "OUTP", "SVEC", "SDIS", "THER", "FLUX", "MEFF", "MPFA",
+                                           "WEIG", "GROU", "TFL",  "SURF", "VOLU", "STRF", "ID",   "TIME", "CEND", "DIAG", "NAST", "APP",
+                                           "SKIP", "RESU", "BCRE", "ELSD", "GPSD", "VUGR", "NLST", "ASSI", "INIT", "FORM", "XYPL", "XYPR",
+                                           "XYPU", "PLOT", "OTIM", "OMOD", "ELDA", "ENTH", "HDOT", "HOUT"};
+  static const std::set<std::string> whole{"MODALKE", "MODALSE", "CONTACTRESULTS"};
+  return heads.contains(head_of(word)) || whole.contains(word) || word.find_first_not_of("0123456789") == std::string::npos;
+}
+
+/// ANALYSIS of a subcase: the solution that it is, "" where it is none here.
+std::string solution_of(const std::string& analysis) {
+  static const std::map<std::string, std::string> known{{"STAT", "101"}, {"MODE", "103"}, {"BUCK", "105"}, {"NLST", "106"}};
+  const auto it = known.find(head_of(analysis));
+  return it == known.end() ? "" : it->second;
 }
 
 /// Text and controls, which end with their line; SET and the other requests go on behind a comma.
 bool goes_on_by_comma(const std::string& word) {
-  static const std::set<std::string> ends_there{"SUBTITLE", "LABEL", "ECHO", "LINE", "MAXLINES", "PAGE", "ID", "TIME", "CEND", "APP"};
-  return is_request(word) && !ends_there.contains(word);
+  static const std::set<std::string> ends_there{"SUBT", "LABE", "ECHO", "LINE", "MAXL", "PAGE", "ID", "TIME", "CEND", "APP"};
+  return is_request(word) && !ends_there.contains(head_of(word));
 }
 
 std::int64_t number_in(const std::string& value, const BdfCaseLine& line) {
@@ -50,6 +56,13 @@ std::int64_t number_in(const std::string& value, const BdfCaseLine& line) {
   const auto [end, bad] = std::from_chars(value.data(), value.data() + value.size(), n);
   if (bad != std::errc() || n < 0) throw Error(line.place, fmt::format("expected the number of a set, found \"{}\"", line.text));
   return n;
+}
+
+/// Temperatures that the subcase does not take heat nothing, so nothing expands.
+void forget_heat(Imported& in) {
+  std::erase_if(in.not_read, [](const NotRead& n) { return n.what.ends_with(": thermal expansion"); });
+  for (NotRead& n : in.not_read)
+    if (n.what.starts_with("TEMP")) n.what += " of a set that the first subcase does not use";
 }
 
 }  // namespace
@@ -75,7 +88,7 @@ std::vector<std::int64_t> subcases_of(const std::vector<BdfCaseLine>& lines, con
 
 void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in, std::optional<std::int64_t> subcase) {
   BdfCase& c = deck.chosen;
-  bool others = false, goes_on = false;
+  bool others = false, goes_on = false, plots = false;
   std::string buckles;                // place of the SUBCASE of SOL 105 that buckles under the loads of the one before
   std::vector<std::int64_t> numbers;  // of subcases
   for (const BdfCaseLine& line : lines) {
@@ -83,6 +96,7 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
     const auto [word, value] = parts(line.text);
     goes_on = comma && (rest || goes_on_by_comma(word));
     if (rest) continue;
+    plots = plots || (head_of(word) == "OUTP" && line.text.find('(') != std::string::npos);  // its words say how curves are drawn
     if (word == "CEND") c.any = true;
     if (word == "SUBCASE" || word == "SUBCOM" || word == "SYM" || word == "REPCASE") {
       const bool is_case = word == "SUBCASE";
@@ -96,19 +110,20 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
       continue;
     }
     if (!buckles.empty()) {
-      if (word == "METHOD" && c.method < 0)
+      if (head_of(word) == "METH" && c.method < 0)
         c.method = number_in(value, line);
-      else if (!(word == "SPC" && number_in(value, line) == c.spc) && word != "STATSUB" && word != "LABEL" && word != "SUBTITLE" &&
-               !is_request(word))
+      else if (!(word == "SPC" && number_in(value, line) == c.spc) && word != "STATSUB" && !is_request(word))
         in.skip("SUBCASE after the first", std::exchange(buckles, ""));
     }
     if (others) continue;
     if (word == "SOL")
       c.solution = upper(value.substr(0, value.find_first_of(" ,")));
-    else if (word == "TITLE")
+    else if (const std::string solution = word == "ANALYSIS" ? solution_of(upper(value)) : ""; !solution.empty())
+      c.solution = solution;
+    else if (head_of(word) == "TITL")
       c.title = value;
-    else if (word == "SUBTITLE" || word == "LABEL")
-      (word == "LABEL" ? c.label : c.subtitle) = value;
+    else if (head_of(word) == "SUBT" || head_of(word) == "LABE")
+      (word[0] == 'L' ? c.label : c.subtitle) = value;
     else if (word == "SPC")
       c.spc = number_in(value, line);
     else if (word == "MPC")
@@ -119,7 +134,7 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
       c.contact = number_in(value, line);
     else if (word == "LOAD")
       c.load = number_in(value, line);
-    else if (word == "METHOD")
+    else if (head_of(word) == "METH")
       c.method = number_in(value, line);
     else if (word == "TSTEP" || word == "TSTEPNL")
       c.step = number_in(value, line);
@@ -127,9 +142,13 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
       if (upper(line.text).find("WTMASS") != std::string::npos)
         throw Error(line.place, "PARAM WTMASS in case control is not read", "write it into the bulk data");
       in.skip("PARAM in case control", line.place);
-    } else if (!is_request(word))
+    } else if (head_of(word) == "TEMP" || word == "TSTRU") {
+      c.heats = true;
+      in.skip("case control TEMPERATURE", line.place);
+    } else if (!is_request(word) && !plots)
       in.skip("case control " + word.substr(0, 40), line.place);
   }
+  if (c.any && !c.heats) forget_heat(in);
   if (subcase && c.number < 0)
     throw Error("", fmt::format("--subcase {}: there is none", *subcase), fmt::format("subcases: {}", fmt::join(numbers, ", ")),
                 Exit::usage);

@@ -41,6 +41,7 @@ struct BdfLoad {
   std::vector<std::int64_t> elements = {};   // of a pressure
   std::array<std::int64_t, 2> face{};        // PLOAD4 on solids: G1, and G3 or G4
   std::vector<std::int64_t> corners = {};    // PLOAD: a face by its grids
+  std::vector<double> at_corners = {};       // PLOAD4 that varies: P1 to P4
   bool own_axes = false, projected = false;  // PLOAD1: in axes of the beam; per length across the load
   std::array<double, 2> from_to{};           // PLOAD1: where it begins and ends, of the length or in units of the deck; equal: at a point
   bool as_share = false, turns = false;      // the former; a moment
@@ -111,15 +112,37 @@ struct BdfCase {
   std::string title, subtitle, label, solution;  // "101"
   std::int64_t spc = -1, load = -1, mpc = -1, glue = -1, contact = -1, method = -1, step = -1, number = -1;
   bool any = false;  // case control is there: CEND is said
+  bool heats = false;
+  bool is_static() const {
+    return std::set<std::string>{"101", "1", "SESTATIC", "SESTATICS", "STATICS", "106", "NLSTATIC", "NLSTATICS"}.contains(solution);
+  }
   bool buckles() const { return solution == "105" || solution == "5" || solution == "SEBUCKL" || solution == "BUCKLING"; }
 };
 
 /// PSHELL, PCOMP: thickness, offset of the mid-surface.  PBAR, PBEAM and their like: a section, axis 2 in plane 1.
 struct BdfThin {
   double thickness = 0, offset = 0;
-  DeckSection section = {}, end = {};  // of beams; end: of those that taper
-  std::string no_solid;  // why a solid-shell cannot stand for it
+  DeckSection section = {}, end = {};                 // of beams; end: of those that taper
+  std::array<std::array<double, 2>, 2> neutral = {};  // of beams, at ends A and B: the centre of area from the shear centre, along y and z
+  bool bends_only = false;                            // PSHELL without MID1
+  double angle = 0;                                   // of all layers of a PCOMP, in degrees
+  std::string turned_layers = {};                     // place of one whose angle is another
+  std::string no_solid;                               // why a solid-shell cannot stand for it
   std::string place = {};
+};
+
+/// BAROR, BEAMOR: what beams that leave it blank have.
+struct BdfBeamDefault {
+  std::int64_t property = 0, towards = 0;
+  Vec3 v = Vec3::Zero();
+  std::string axes, place;
+};
+/// CMASS1, CMASS2: a mass along one component of a grid.
+struct BdfScalarMass {
+  std::string name, place;
+  std::int64_t id = 0, property = 0, grid = 0;  // property 0: the mass is given
+  int component = 0;                            // 1 to 6
+  double mass = 0;
 };
 
 /// MPC: the sum of displacements, times factors, is zero.
@@ -142,14 +165,16 @@ struct BdfDeck {
   /// A shell (`nodes`: its corners) or a beam.
   struct Thin : Cell {
     std::vector<std::int64_t> middles = {};
-    double offset = 0;                        // of a shell, along its normal
-    std::array<double, 4> own = {};           // of a shell: T1 to T4, 0 where that of its property is taken
-    bool own_are_shares = false;              // TFLAG 1: they are factors of that
-    std::int64_t towards = 0;                 // of a beam: G0
-    Vec3 v = Vec3::Zero();                    // of a beam: in its plane 1
-    Vec3 start = Vec3::Zero(), end = start;   // of a beam: offsets of its ends
-    std::string card = "beam", axes = "GGG";  // of a beam: OFFT, which axes v and both offsets are in
-    unsigned pins[2] = {0, 0};                // of a beam: components that its ends leave free, in its own axes
+    double offset = 0;                       // of a shell, along its normal
+    std::array<double, 4> own = {};          // of a shell: T1 to T4, 0 where that of its property is taken
+    bool own_are_shares = false;             // TFLAG 1: they are factors of that
+    double theta = 0;                        // of a shell: from its first edge to axis 1 of its material, in degrees
+    std::int64_t material_system = -1;       // MCID instead; -1: none
+    std::int64_t towards = 0;                // of a beam: G0
+    Vec3 v = Vec3::Zero();                   // of a beam: in its plane 1
+    Vec3 start = Vec3::Zero(), end = start;  // of a beam: offsets of its ends
+    std::string card = "beam", axes = "";    // of a beam: OFFT, which axes v and both offsets are in
+    unsigned pins[2] = {0, 0};               // of a beam: components that its ends leave free, in its own axes
   };
   std::vector<Vec3> X;
   std::vector<std::int64_t> node_id;
@@ -159,7 +184,8 @@ struct BdfDeck {
   std::unordered_map<std::int64_t, std::int64_t> row;  // number of a grid -> row of X
   std::vector<Cell> cells;
   std::vector<Thin> shells, beams;
-  std::map<std::int64_t, BdfThin> thin;  // by property
+  std::map<std::string, BdfBeamDefault> beam_default;  // of "CBAR", "CBEAM"
+  std::map<std::int64_t, BdfThin> thin;                // by property
   std::set<std::int64_t> cell_ids;
   std::set<std::int64_t> pyramids;                          // elements, and their second halves
   std::unordered_map<std::int64_t, std::int64_t> cell_row;  // number of a cell -> row of cells
@@ -188,6 +214,8 @@ struct BdfDeck {
   std::vector<BdfRigid> rigid;
   std::vector<BdfMean> means;
   std::vector<BdfMass> masses;
+  std::vector<BdfScalarMass> scalar_masses;
+  std::map<std::int64_t, double> mass_of;  // PMASS
   std::vector<BdfSpring> springs;
   std::map<std::pair<std::string, std::int64_t>, BdfSpringData> spring_data;  // by "PELAS", PDAMP, PBUSH, PBUSH1D and number
 };

@@ -90,6 +90,30 @@ void read_conm2(const BdfEntry& e, BdfDeck& deck, Imported&) {
   deck.masses.push_back(m);
 }
 
+/// By a property: EID PID G1 C1 G2 C2, and by a value: EID M G1 C1 G2 C2; the mass between two grids is none of a body.
+void read_scalar_mass(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  BdfScalarMass m{e.name, d.place(), d.integer(0)};
+  if (e.name == "CMASS1")
+    m.property = d.empty(1) ? m.id : d.integer(1);
+  else
+    m.mass = d.number(1);
+  const size_t end = d.empty(2) ? 4 : 2;
+  if (!d.empty(2) && !d.empty(4)) return in.skip(e.name + " between two grids", d.place(4));
+  m.grid = d.integer(end);
+  const auto component = d.empty(end + 1) ? 0 : d.integer(end + 1);
+  if (component < 1 || component > 6)
+    throw Error(d.place(end + 1), fmt::format("{} {}: component {} is not 1 to 6", e.name, m.id, component));
+  m.component = static_cast<int>(component);
+  deck.scalar_masses.push_back(m);
+}
+/// PID1 M1 PID2 M2 ...
+void read_pmass(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  for (size_t i = 0; i < 8; i += 2)
+    if (!e.data.empty(i) && !deck.mass_of.try_emplace(e.data.integer(i), e.data.number(i + 1)).second)
+      throw Error(e.data.place(i), fmt::format("PMASS {} is given twice", e.data.integer(i)), "number each property once");
+}
+
 void ends(const DataLine& d, size_t field, BdfSpring& s) {
   for (size_t i = 0; i < 2; ++i) {
     s.grids[i] = d.empty(field + 2 * i) ? 0 : d.integer(field + 2 * i);
@@ -200,10 +224,11 @@ void read_bctset(const BdfEntry& e, BdfDeck& deck, Imported&) {
 
 std::span<const BdfCard> bdf_link_cards() {
   static constexpr BdfCard cards[] = {
-      {"RBE2", read_rbe2},       {"RBAR", read_rbar},     {"RBAR1", read_rbar1},   {"RROD", read_rrod},     {"RBE3", read_rbe3},
-      {"CONM2", read_conm2},     {"CELAS1", read_scalar}, {"CELAS2", read_scalar}, {"CDAMP1", read_scalar}, {"CDAMP2", read_scalar},
-      {"CBUSH", read_bush},      {"CBUSH1D", read_bush},  {"PELAS", read_pelas},   {"PDAMP", read_pelas},   {"PBUSH", read_pbush},
-      {"PBUSH1D", read_pbush1d}, {"BSURFS", read_bsurfs}, {"BGSET", read_bgset},   {"BCTSET", read_bctset},
+      {"RBE2", read_rbe2},          {"RBAR", read_rbar},     {"RBAR1", read_rbar1},   {"RROD", read_rrod},     {"RBE3", read_rbe3},
+      {"CONM2", read_conm2},        {"CELAS1", read_scalar}, {"CELAS2", read_scalar}, {"CDAMP1", read_scalar}, {"CDAMP2", read_scalar},
+      {"CBUSH", read_bush},         {"CBUSH1D", read_bush},  {"PELAS", read_pelas},   {"PDAMP", read_pelas},   {"PBUSH", read_pbush},
+      {"PBUSH1D", read_pbush1d},    {"BSURFS", read_bsurfs}, {"BGSET", read_bgset},   {"BCTSET", read_bctset}, {"CMASS1", read_scalar_mass},
+      {"CMASS2", read_scalar_mass}, {"PMASS", read_pmass},
   };
   return cards;
 }

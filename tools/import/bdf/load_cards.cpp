@@ -2,6 +2,8 @@
 // The entries of a Nastran file that say supports and loads, and the sets of them that case control names.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "import/bdf/card.hpp"
 
@@ -91,8 +93,8 @@ void read_pload4(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
   BdfLoad l{BdfLoad::Kind::pressure};
   l.place = d.place(), l.size = d.number(2), l.elements = {d.integer(1)};
-  for (size_t i = 3; i < 6; ++i)
-    if (!d.empty(i) && d.number(i) != l.size) return in.skip("PLOAD4 that varies over the face", d.place(i));
+  for (size_t i = 2; i < 6; ++i) l.at_corners.push_back(d.number(i, l.size));
+  if (std::ranges::all_of(l.at_corners, [&](double p) { return p == l.size; })) l.at_corners.clear();
   if (upper(d.text(6)) == "THRU") {
     const auto last = d.integer(7);
     if (last < l.elements[0] || last - l.elements[0] > 100'000'000)

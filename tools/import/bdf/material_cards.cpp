@@ -93,6 +93,28 @@ void read_mathp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
       return no_law(m, in, "MATHP of higher order, or by tests", d.place(i));
 }
 
+/// MID E1 E2 NU12 G12 G1Z G2Z RHO, of plane stress: across the shell E3 is E2, and its ratios are 0, which leaves the plane as it is.
+void read_mat8(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  DeckMaterial& m = material_of(e, deck);
+  const double E1 = d.number(1), E2 = d.number(2), nu12 = d.number(3), G12 = d.number(4);
+  for (const size_t i : {1, 2, 4})
+    if (!(d.number(i) > 0)) throw Error(d.place(i), fmt::format("MAT8 {}: the modulus {:g} is not positive", d.integer(0), d.number(i)));
+  m.become("orthotropic");
+  m.set({"E1", {E1}, "Pa"}), m.set({"E2", {E2}, "Pa"}), m.set({"E3", {E2}, "Pa"});
+  m.set({"nu12", {nu12}}), m.set({"nu13", {0}}), m.set({"nu23", {0}});
+  m.set({"G12", {G12}, "Pa"}), m.set({"G13", {d.number(5, G12)}, "Pa"}), m.set({"G23", {d.number(6, d.number(5, G12))}, "Pa"});
+  if (d.empty(5) || d.empty(6))
+    in.notes.push_back(fmt::format("{}: MAT8 {}: a blank G1Z is G12, a blank G2Z is G1Z", d.place(), d.integer(0)));
+  if (!d.empty(7) && d.number(7) != 0)
+    m.data.density = d.number(7);
+  else
+    deck.without_density[d.integer(0)] = d.place();
+  if (d.number(8) != 0 || d.number(9) != 0) in.skip("MAT8: thermal expansion", d.place(8));
+  if (d.number(16) != 0) in.skip("MAT8: structural damping GE", d.place(16));
+  d.ignore_rest();  // its reference temperature, and limits of stress
+}
+
 /// Kinds without a law here.
 void read_other(const BdfEntry& e, BdfDeck& deck, Imported& in) { no_law(material_of(e, deck), in, e.name, e.data.place()); }
 
@@ -164,7 +186,7 @@ void resolve_metals(BdfDeck& deck, Imported& in) {
 
 std::span<const BdfCard> bdf_material_cards() {
   static constexpr BdfCard cards[] = {{"MAT1", read_mat1},    {"MATS1", read_mats1}, {"TABLES1", read_tables1}, {"MATHP", read_mathp},
-                                      {"MAT3", read_other},   {"MAT8", read_other},  {"MAT9", read_other},      {"MAT11", read_other},
+                                      {"MAT3", read_other},   {"MAT8", read_mat8},   {"MAT9", read_other},      {"MAT11", read_other},
                                       {"MATORT", read_other}, {"MATHE", read_other}};
   return cards;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "import/bdf/card.hpp"
@@ -155,6 +156,21 @@ void read_rod_property(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (!e.data.empty(2)) deck.area_of[e.data.integer(0)] = e.data.number(2);
 }
 
+/// PID MID OD T NSM OD2: a pipe; T 0 or blank is a full rod.
+void read_pipe(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  read_property(e, deck, in);
+  const double at_a = d.number(2), at_b = d.number(5, at_a), t = d.number(3);
+  if (!(at_a > 0 && at_b > 0 && t >= 0 && 2 * t <= std::min(at_a, at_b)))
+    throw Error(d.place(2),
+                fmt::format("PTUBE {}: no pipe has the diameters {:g} and {:g} and the wall {:g}", d.integer(0), at_a, at_b, t));
+  const auto area = [&](double D) { return std::numbers::pi * (t > 0 ? t * (D - t) : D * D / 4); };
+  deck.area_of[d.integer(0)] = (area(at_a) + area(at_b)) / 2;
+  if (at_a != at_b) in.skip("PTUBE that tapers: the mean of the areas at its ends is taken", d.place());
+  in.skip("PTUBE: torsion", d.place());
+  if (d.number(4) != 0) in.skip("PTUBE: mass per length NSM", d.place(4));
+}
+
 void read_param(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
   if (upper(d.text(0)) != "WTMASS") return in.skip("PARAM " + upper(d.text(0)).substr(0, 40), d.place());
@@ -190,7 +206,8 @@ std::span<const BdfCard> bdf_mesh_cards() {
       {"CORD1S", read_cord1},   {"CORD2R", read_cord2},        {"CORD2C", read_cord2},      {"CORD2S", read_cord2},
       {"CTETRA", read_solid},   {"CPENTA", read_solid},        {"CHEXA", read_solid},       {"CROD", read_rod},
       {"CONROD", read_conrod},  {"PSOLID", read_property},     {"PROD", read_rod_property}, {"PARAM", read_param},
-      {"CPYRAM", read_pyramid}, {"CTRAX3", axisymmetric},      {"CTRAX6", axisymmetric},
+      {"CTUBE", read_rod},      {"PTUBE", read_pipe},          {"CPYRAM", read_pyramid},    {"CTRAX3", axisymmetric},
+      {"CTRAX6", axisymmetric},
   };
   return cards;
 }

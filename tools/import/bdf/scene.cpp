@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <unordered_map>
 
 #include "base/error.hpp"
 
@@ -27,15 +29,18 @@ BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const Imp
 std::string BdfScene::text() {
   choose_loads();
   hold();
+  find_masses();
   find_bodies();
   gravity();
   rotation();
   materials();
   bodies();
   beams();
+  rotation_of_bodies();
   rigid();
   springs();
   supports();
+  varying_pressures();
   nodal_loads();
   pressures();
   line_loads();
@@ -96,6 +101,12 @@ void BdfScene::materials() {
   const Mesh& m = in_.mesh;
   std::map<std::int64_t, std::int64_t> property_of;  // region -> its first property
   for (size_t c = 0; c < deck_.cells.size(); ++c) property_of.try_emplace(m.region[c], deck_.cells[c].property);
+  if (in_.sheets) {  // shells that become solids
+    std::unordered_map<std::int64_t, std::int64_t> of_shell;
+    for (const auto& s : deck_.shells) of_shell.try_emplace(s.id, s.property);
+    for (size_t c = deck_.cells.size(); c < m.cell_id.size(); ++c)
+      if (const auto s = of_shell.find(m.cell_id[c]); s != of_shell.end()) property_of.try_emplace(m.region[c], s->second);
+  }
   std::set<std::int64_t> used;
   std::string lines;
   for (const auto& [r, property] : property_of) {
@@ -113,6 +124,8 @@ void BdfScene::materials() {
                            : "";
     if (!mat->second.no_law.empty()) {
       lines += fmt::format("\n# region {}: material {} has no law here ({}), give it one\n", region, mat->first, mat->second.no_law);
+    } else if (mat->second.kind == "orthotropic") {
+      keys = turned_material(property, mat->second) + keys;
     } else if (!mat->second.elastic()) {
       used.insert(mat->first);
       keys = fmt::format("material = {}\n", toml_text(mat->second.name)) + keys;
@@ -123,6 +136,38 @@ void BdfScene::materials() {
   }
   for (const auto id : used) tables_ += deck_.materials.at(id).table(deck_.materials.at(id).name, options_.units);
   tables_ += lines;
+}
+
+/// MAT8 of shells that lie in one plane, with its axes there; without a law where they or the layers turn.
+std::string BdfScene::turned_material(std::int64_t property, const DeckMaterial& m) {
+  const auto none = [&](const std::string& what, const std::string& place) {
+    in_.skip(what, place);
+    return fmt::format("# material {} has no law here ({}, {})\n", m.name, what, place);
+  };
+  const auto thin = deck_.thin.find(property);
+  if (thin == deck_.thin.end()) return none("MAT8 of cells that are no shells", "");
+  if (!thin->second.turned_layers.empty()) return none("MAT8: layers of several directions", thin->second.turned_layers);
+  Vec3 first = Vec3::Zero(), up = first;
+  for (const auto& s : deck_.shells) {
+    if (s.property != property) continue;
+    std::vector<Vec3> x;
+    for (const auto grid : s.nodes) x.push_back(X(row(grid, s.place, "shell")));
+    const Vec3 normal = (x.size() == 3 ? (x[1] - x[0]).cross(x[2] - x[0]) : (x[2] - x[0]).cross(x[3] - x[1])).normalized();
+    Vec3 along = s.material_system < 0 ? Vec3(x[1] - x[0]) : Vec3(axes_at(deck_, s.material_system, x[0], s.place).col(0));
+    along = (along - normal * normal.dot(along)).normalized();
+    const double turn = (s.theta + thin->second.angle) * std::numbers::pi / 180;
+    along = std::cos(turn) * along + std::sin(turn) * normal.cross(along);
+    if (first == Vec3::Zero()) first = along, up = normal;
+    if (std::abs(along.dot(first)) < 1 - 1e-6 || std::abs(normal.dot(up)) < 1 - 1e-6)
+      return none("MAT8: shells whose directions differ within a property", s.place);
+  }
+  DeckMaterial law = m;
+  const Vec3 second = up.cross(first);
+  law.name = fmt::format("{}_pid_{}", m.name, property);
+  law.set({"axis_1", {first.x(), first.y(), first.z()}, "1", true});
+  law.set({"axis_2", {second.x(), second.y(), second.z()}, "1", true});
+  tables_ += law.table(law.name, options_.units);
+  return fmt::format("material = {}\n", toml_text(clean_name(law.name)));
 }
 
 /// What the supports of the subcase hold.
@@ -290,8 +335,10 @@ void BdfScene::time() {
   const auto is = [&](std::initializer_list<const char*> words) {
     return std::any_of(words.begin(), words.end(), [&](const char* w) { return c.solution == w; });
   };
-  if (is({"101", "1", "SESTATIC", "SESTATICS", "STATICS", "106", "NLSTATIC", "NLSTATICS"})) {
-    tables_ += "\n[time]\nanalysis = \"static\"\n";
+  if (c.is_static()) {
+    const bool linear = !c.solution.starts_with("106") && !c.solution.starts_with("NL");
+    tables_ += fmt::format("\n[time]{}\nanalysis = \"static\"\n",
+                           linear ? "   # linear in the deck; here displacements may be large, and loads act on the deformed shape" : "");
   } else if (is({"103", "3", "SEMODES", "MODES", "NORMAL"})) {
     tables_ += "\n[time]\nanalysis = \"modes\"\n";
     const auto n = deck_.modes.find(c.method);

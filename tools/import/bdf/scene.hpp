@@ -28,15 +28,18 @@ class BdfScene {
 
   // scene.cpp
   void materials();
+  std::string turned_material(std::int64_t property, const DeckMaterial& m);
   void hold();
   void supports();
   void equations();
   std::string why_no_sum(const BdfEquation& m) const;
   bool is_slide(const BdfEquation& m) const;
+  bool is_joint(const BdfEquation& m) const;
   void sum_up(const BdfEquation& m);
   void supports_of_bodies();
   void time();
   // scene_links.cpp
+  void find_masses();
   void find_bodies();
   void find_bodies_of_shells();
   void join_rigid();
@@ -47,6 +50,7 @@ class BdfScene {
   void beams();
   void beam(const BdfDeck::Thin& b);
   std::vector<double> sections_of(const BdfDeck::Thin& b, double length) const;
+  bool nothing_twists(std::int64_t property) const;
   std::string section_name(std::int64_t property) const;
   // scene_pairs.cpp
   std::string pair_surface(std::int64_t region);
@@ -62,6 +66,8 @@ class BdfScene {
   void choose_loads();
   void gravity();
   void rotation();
+  void rotation_of_bodies();
+  void varying_pressures();
   void nodal_loads();
   void distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const std::string& place);
   void pressures();
@@ -103,6 +109,7 @@ class BdfScene {
   const ImportOptions& options_;
   double size_ = 1;                              // of the model, in units of the deck
   std::vector<char> used_;                       // by cells (n grids)
+  std::vector<BdfMass> masses_;                  // CONM2, and what CMASS1 and CMASS2 are together
   std::vector<BdfRigid> rigid_;                  // those that share a turning node as one
   std::map<std::int64_t, std::string> body_;     // row -> what makes a body of it
   std::map<std::int64_t, const BdfMean*> mean_;  // row -> the mean that it follows
@@ -131,12 +138,19 @@ class BdfScene {
     Vec3 start;                       // of its first section, as lengths below in units of the deck
     std::vector<double> sections;     // where they stand along it
     std::array<std::string, 2> ends;  // bodies that its ends are fixed to; "" at a pin
+    bool apart = false;               // its neutral axis is off its shear centre
     double length() const { return sections.back(); }
     size_t section(double s) const;
     std::string body(size_t section) const;
   };
-  std::multimap<std::int64_t, const BdfLoad*> by_beam_;  // PLOAD1
-  std::map<std::int64_t, MadeBeam> made_beams_;          // by element
+  struct Spin {
+    Vec3 at, omega;  // in units of the deck
+    std::string place;
+  };
+  std::vector<Spin> spins_;                                      // RFORCE
+  std::multimap<std::int64_t, const BdfLoad*> by_beam_;          // PLOAD1
+  std::map<std::int64_t, MadeBeam> made_beams_;                  // by element
+  std::map<std::int64_t, std::array<DeckSection, 2>> sections_;  // of beams, by property
   std::vector<std::pair<double, const BdfLoad*>> loads_;
   std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
   std::map<std::int64_t, std::string> glue_name_;                        // region -> set

@@ -9,8 +9,8 @@
 namespace hilo {
 namespace {
 
-bool has_scene_material(const BdfThin& p, const DeckMaterial& m) {
-  return hilo::has_scene_material(p.section, m) && (!p.end.given() || hilo::has_scene_material(p.end, m));
+bool have_scene_material(const std::array<DeckSection, 2>& ends, const DeckMaterial& m) {
+  return has_scene_material(ends[0], m) && has_scene_material(ends[1], m);
 }
 
 }  // namespace
@@ -28,21 +28,45 @@ void BdfScene::beams() {
       if (mat == deck_.materials.end()) throw Error(p.place, fmt::format("property {} of beams has no material", b.property), "MAT1");
       const DeckMaterial& m = mat->second;
       if (m.kind != "stvk" || !m.no_law.empty()) in_.skip("MATS1 of beams, which are linear elastic", p.place);
-      if (p.section.kind == "general" && !(p.section.area(0.3, p.place).J > 0))
-        in_.notes.push_back(fmt::format("{}: property {} has no J: a millionth of I1 + I2 is taken", p.place, b.property));
-      const bool with_material = has_scene_material(p, m);
-      if (with_material && materials.insert(mat->first).second) tables_ += m.table(m.name, options_.units);
-      const auto add = [&](const std::string& name, const DeckSection& section) {
-        tables_ += section_table(name, section, with_material, m, options_.units, options_.scale, p.place);
-      };
-      add(section_name(b.property), p.section);
-      if (p.end.given()) add(section_name(b.property) + "_end", p.end);
+      std::array<DeckSection, 2> ends{p.section, p.end.given() ? p.end : p.section};
+      bool twistless = false;
+      const bool alone = nothing_twists(b.property);
+      for (DeckSection& s : ends)
+        if (const SectionArea a = s.area(0.3, p.place); s.kind == "general" && !(a.J > 0)) {
+          twistless = true;
+          if (alone) std::ranges::find(s.sizes, "J", &std::pair<std::string, double>::first)->second = a.I1 + a.I2;
+        }
+      if (twistless)
+        in_.notes.push_back(alone ? fmt::format("{}: property {} has no J, and its beams meet beams along their line alone: they do not "
+                                                "twist (J = I1 + I2)",
+                                                p.place, b.property)
+                                  : fmt::format("{}: property {} has no J: a millionth of I1 + I2 is taken", p.place, b.property));
+      sections_.emplace(b.property, ends);
+      if (have_scene_material(ends, m) && materials.insert(mat->first).second) tables_ += m.table(m.name, options_.units);
+      for (size_t k = 0; k < (p.end.given() ? 2 : 1); ++k)
+        tables_ += section_table(section_name(b.property) + (k == 0 ? "" : "_end"), ends[k], ends[1 - k], m, options_.units, options_.scale,
+                                 p.place);
     }
     beam(b);
   }
   for (const auto& [a, place] : on_beam_)
     if (used_[static_cast<size_t>(a)] && !is_of_shell(a))
       joint(7, Mat3::Identity(), end_name(a) + "_node", end_name(a), node_set(a), X(a), place);
+}
+
+/// Whether the beams of a property meet beams along their own line alone: a twist that no J resists is held there by Nastran (AUTOSPC).
+bool BdfScene::nothing_twists(std::int64_t property) const {
+  std::multimap<std::int64_t, Vec3> along;  // grid -> directions of its beams
+  const auto direction = [&](const BdfDeck::Thin& b) {
+    return Vec3(X(row(b.nodes[1], b.place, b.card)) - X(row(b.nodes[0], b.place, b.card))).normalized();
+  };
+  for (const auto& b : deck_.beams)
+    for (const auto grid : b.nodes) along.emplace(grid, direction(b));
+  for (const auto& b : deck_.beams)
+    for (const auto grid : b.nodes)
+      for (auto [it, end] = along.equal_range(grid); it != end && b.property == property; ++it)
+        if (it->second.cross(direction(b)).norm() > 1e-6) return false;
+  return true;
 }
 
 std::string BdfScene::section_name(std::int64_t property) const {
@@ -87,9 +111,8 @@ void BdfScene::beam(const BdfDeck::Thin& b) {
   DeckBeam out{
       .name = unique("beam", fmt::format("{}_{}", b.card, b.id)), .place = b.place, .section = section_name(b.property), .up = at.up};
   for (const double s : sections) out.points.push_back(Vec3(s == length ? at.b : Vec3(at.a + s / length * (at.b - at.a))) * metre);
-  const BdfThin& p = section_of_beam(deck_, b);
-  if (has_scene_material(p, m)) out.material = clean_name(m.name);
-  if (p.end.given()) out.section_end = out.section + "_end";
+  if (have_scene_material(sections_.at(b.property), m)) out.material = clean_name(m.name);
+  if (section_of_beam(deck_, b).end.given()) out.section_end = out.section + "_end";
   for (size_t k = 0; k < 2; ++k)
     if (!b.pins[k]) (k == 0 ? out.a : out.b) = end_name(row(b.nodes[k], b.place, b.card));
   tables_ += beam_table(out);
@@ -97,7 +120,7 @@ void BdfScene::beam(const BdfDeck::Thin& b) {
   own.col(0) = (at.b - at.a).normalized();
   own.col(2) = own.col(0).cross(at.up).normalized();
   own.col(1) = own.col(2).cross(own.col(0));
-  made_beams_[b.id] = {out.name, own, at.a, sections, {out.a, out.b}};
+  made_beams_[b.id] = {out.name, own, at.a, sections, {out.a, out.b}, section_of_beam(deck_, b).section.shear_centre != std::array{0., 0.}};
   for (size_t k = 0; k < 2; ++k)
     if (b.pins[k])
       joint(63 & ~b.pins[k], own, out.name + (k == 0 ? "_pin_a" : "_pin_b"), end_name(row(b.nodes[k], b.place, b.card)),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What ties grids together, as scene lines: a grid of no cell that something is tied to becomes a [[body]], a rigid element a joint between
 // it and a set, a spring a [[spring]] or a joint that gives way.
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -72,7 +73,7 @@ void BdfScene::find_bodies_of_shells() {
   }
   for (const BdfSpring& s : deck_.springs)
     for (const auto g : s.grids) make(g, s.place, s.name);
-  for (const BdfMass& m : deck_.masses) make(m.grid, m.place, "CONM2");
+  for (const BdfMass& m : masses_) make(m.grid, m.place, "CONM2");
   for (const auto& [id, list] : deck_.ties)
     for (const BdfEquation& m : list)
       for (const auto& t : m.terms) make(t.grid, m.place, "MPC");
@@ -86,6 +87,34 @@ void BdfScene::find_bodies_of_shells() {
   for (const auto& [a, h] : held_) {
     const bool turned = h.value[3] != 0 || h.value[4] != 0 || h.value[5] != 0;
     if (is_of_shell(a) && needs_body(sheets(a), {h.bits, turned, !axes(a).isIdentity(1e-12)})) body_.try_emplace(a, h.place);
+  }
+}
+
+/// CONM2, and of CMASS1 and CMASS2 those that are equal along all three axes of their grid, or along those that no support holds.
+void BdfScene::find_masses() {
+  masses_ = deck_.masses;
+  struct Sum {
+    std::array<double, 6> along{};
+    const BdfScalarMass* first = nullptr;
+  };
+  std::map<std::int64_t, Sum> sums;
+  for (const BdfScalarMass& m : deck_.scalar_masses) {
+    Sum& s = sums[row(m.grid, m.place, m.name)];
+    s.along[static_cast<size_t>(m.component - 1)] += m.mass;
+    if (!s.first) s.first = &m;
+  }
+  for (const auto& [a, s] : sums) {
+    const auto held = held_.find(a);
+    const unsigned bits = held == held_.end() ? 0 : held->second.bits;
+    double most = 0, least = 1e300;
+    for (size_t k = 0; k < 3; ++k)
+      if (!(bits >> k & 1)) most = std::max(most, s.along[k]), least = std::min(least, s.along[k]);
+    const bool turns = std::any_of(s.along.begin() + 3, s.along.end(), [](double m) { return m != 0; });
+    if (most < 0 || most - least > 1e-9 * most || turns) {
+      in_.skip(fmt::format("{}: {}", s.first->name, turns ? "inertia of turns" : "a mass that differs by direction"), s.first->place);
+      continue;
+    }
+    if (most > 0) masses_.push_back({s.first->id, s.first->grid, 0, most, Vec3::Zero(), Mat3::Zero(), s.first->place});
   }
 }
 
@@ -118,11 +147,11 @@ void BdfScene::find_bodies() {
     std::string why = m.not_read;
     if (why.empty() && !free(a)) why = "RBE3 whose grid is a node of a cell";
     if (why.empty() && body_.contains(a)) why = "RBE3 whose grid carries springs or rigid elements";
-    if (why.empty() && (m.components & 7) != 7) why = "RBE3 that leaves its grid a component";
+    if (why.empty() && m.components == 0) why = "RBE3 of no component";
     if (why.empty() && !mean_.try_emplace(a, &m).second) why = "RBE3 of a grid that has one already";
     if (!why.empty()) in_.skip(why, m.place);
   }
-  for (const BdfMass& m : deck_.masses)
+  for (const BdfMass& m : masses_)
     if (const auto a = row(m.grid, m.place, "CONM2"); !mean_.contains(a)) make(m.grid, m.place, "CONM2");
   for (const auto& [a, place] : body_)
     if (is_of_shell(a)) in_.body_of_node[a] = body_name(deck_.node_id[static_cast<size_t>(a)]);
@@ -143,7 +172,7 @@ void BdfScene::bodies() {
     const Vec3 x = arm * options_.scale;
     return x.squaredNorm() * Mat3::Identity() - x * x.transpose();
   };
-  for (const BdfMass& m : deck_.masses) {
+  for (const BdfMass& m : masses_) {
     const auto a = row(m.grid, m.place, "CONM2");
     const Mat3 own = axes_at(deck_, std::max<std::int64_t>(m.system, 0), X(a), m.place);
     const Vec3 at = m.system < 0 ? m.offset : Vec3(X(a) + own * m.offset);
@@ -192,7 +221,11 @@ void BdfScene::bodies() {
     const double i = si("kg m^2");
     tables_ += fmt::format("\n[[body]]   # {}\nname = {}\nmass = {}\ncom = {}\n", place, toml_text(end_name(a)), number(s.mass, "kg"),
                            point(X(a) + arm));
-    if (J.norm() > 0)
+    const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(J).eigenvalues();
+    const bool of_no_body = moments[0] < 0 || moments[2] > (moments[0] + moments[1]) * (1 + 1e-9);
+    if (of_no_body && (deck_.chosen.is_static() || deck_.chosen.buckles()))
+      in_.notes.push_back(fmt::format("{}: no body has the inertia of this CONM2: it is left out, as it counts in no static run", place));
+    else if (J.norm() > 0)
       tables_ += fmt::format("inertia = {}\n", toml_list({J(0, 0) * i, J(1, 1) * i, J(2, 2) * i, J(0, 1) * i, J(0, 2) * i, J(1, 2) * i}));
   }
   for (const auto& [mass, group] : on_nodes) {
@@ -275,6 +308,18 @@ void BdfScene::sum_up(const BdfEquation& m) {
                              [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
 }
 
+/// Two components of bodies that are equal: turns, or displacements at one place.
+bool BdfScene::is_joint(const BdfEquation& m) const {
+  if (m.terms.size() != 2) return false;
+  const auto &a = m.terms[0], &b = m.terms[1];
+  if (a.component != b.component || a.component < 1 || a.component > 6 || a.factor == 0 ||
+      std::abs(a.factor + b.factor) > 1e-9 * std::abs(a.factor))
+    return false;
+  const auto ra = row(a.grid, m.place, "MPC"), rb = row(b.grid, m.place, "MPC");
+  return ra != rb && end(ra) == End::body && end(rb) == End::body && axes(ra).isApprox(axes(rb), 1e-9) &&
+         (a.component > 3 || (X(ra) - X(rb)).norm() < 1e-9 * size_);
+}
+
 /// Of the sets that the first subcase takes, or of all without case control: displacements that are equal are those of a body of no mass,
 /// which slides along them.
 void BdfScene::equations() {
@@ -282,6 +327,7 @@ void BdfScene::equations() {
   const auto sum = deck_.tie_sums.find(chosen.mpc);
   EqualDisplacements equals;
   std::map<Displacement, std::string> place;
+  std::map<std::pair<std::int64_t, std::int64_t>, std::pair<unsigned, std::string>> joints;  // between rows: components, first place
   for (const auto& [id, list] : deck_.ties) {
     const bool taken =
         !chosen.any || id == chosen.mpc ||
@@ -289,6 +335,11 @@ void BdfScene::equations() {
     if (!taken) in_.skip("MPC of a set that the first subcase does not use", list.front().place, static_cast<std::int64_t>(list.size()));
     for (const BdfEquation& m : list) {
       if (!taken) continue;
+      if (is_joint(m)) {
+        const auto a = row(m.terms[0].grid, m.place, "MPC"), b = row(m.terms[1].grid, m.place, "MPC");
+        joints.try_emplace(std::minmax(a, b), 0u, m.place).first->second.first |= 1u << (m.terms[0].component - 1);
+        continue;
+      }
       if (const std::string why = why_no_sum(m); !why.empty()) {
         in_.skip("MPC" + why, m.place);
         continue;
@@ -303,6 +354,9 @@ void BdfScene::equations() {
       place.try_emplace(a, m.place), place.try_emplace(b, m.place);
     }
   }
+  for (const auto& [ends, held] : joints)
+    joint(held.first, axes(ends.first), end_name(ends.second) + "_equal", end_name(ends.first), end_name(ends.second), X(ends.second),
+          held.second);
   std::map<Displacement, std::string> body;
   for (const auto& [x, up] : equals.all()) {
     const std::string axis = direction(Vec3::Unit(x.second - 1));

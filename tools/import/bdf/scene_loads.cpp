@@ -2,6 +2,7 @@
 // Loads of a Nastran file as scene lines: forces by node, moments on bodies, pressures and tractions on facets, gravity.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "base/error.hpp"
@@ -33,6 +34,38 @@ const char* name_of(BdfLoad::Kind kind) {
       return "PLOAD1";
   }
   return "";
+}
+
+/// The integrals of N_a p over a triangle or a quadrilateral, along its normal, or along `way` where that is given.
+std::vector<Vec3> forces_of_pressure(const std::vector<Vec3>& x, const std::vector<double>& p, const Vec3& way) {
+  std::vector<Vec3> f(x.size(), Vec3::Zero());
+  const auto add = [&](const std::vector<double>& N, const Vec3& area) {
+    double here = 0;
+    for (size_t a = 0; a < x.size(); ++a) here += N[a] * p[a];
+    const Vec3 push = here * (way.norm() > 0 ? Vec3(area.norm() * way.normalized()) : area);
+    for (size_t a = 0; a < x.size(); ++a) f[a] += N[a] * push;
+  };
+  if (x.size() == 3) {
+    const Vec3 third = (x[1] - x[0]).cross(x[2] - x[0]) / 6;
+    for (size_t i = 0; i < 3; ++i) {
+      std::vector<double> N(3, 0.5);
+      N[i] = 0;
+      add(N, third);
+    }
+    return f;
+  }
+  for (const double u : {-1 / std::numbers::sqrt3, 1 / std::numbers::sqrt3})
+    for (const double v : {-1 / std::numbers::sqrt3, 1 / std::numbers::sqrt3}) {
+      constexpr double at[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+      std::vector<double> N(4);
+      Vec3 along_u = Vec3::Zero(), along_v = Vec3::Zero();
+      for (size_t a = 0; a < 4; ++a) {
+        N[a] = (1 + at[a][0] * u) * (1 + at[a][1] * v) / 4;
+        along_u += at[a][0] * (1 + at[a][1] * v) / 4 * x[a], along_v += (1 + at[a][0] * u) * at[a][1] / 4 * x[a];
+      }
+      add(N, along_u.cross(along_v));
+    }
+  return f;
 }
 
 }  // namespace
@@ -72,28 +105,61 @@ void BdfScene::gravity() {
   if (g.norm() > 0) head_ += fmt::format("gravity = {}\n", list(g, "m/s^2"));
 }
 
-/// Of all solids; the angular velocity is that of the entry times the length of its direction.
+/// Of all solids, by load; the angular velocity is that of the entry times the length of its direction.
 void BdfScene::rotation() {
   for (const auto& [factor, l] : loads_) {
     if (l->kind != BdfLoad::Kind::rotation) continue;
-    if (factor != 1) {
-      in_.skip("RFORCE times a factor of LOAD", l->place);
+    if (factor < 0) {
+      in_.skip("RFORCE times a factor of LOAD below zero", l->place);
       continue;
     }
     const Vec3 at = l->grid ? X(row(l->grid, l->place, "RFORCE")) : Vec3(Vec3::Zero());
     const Vec3 axis = axes_at(deck_, l->system, at, l->place) * l->direction;
-    if (!deck_.masses.empty() || !on_beam_.empty()) in_.skip("RFORCE on masses and beams", l->place);
     std::vector<char> has(in_.mesh.region_name.size(), 0);
     for (std::int64_t c = 0; c < in_.mesh.n_cells(); ++c)
       if (info(in_.mesh.shape[static_cast<size_t>(c)]).dimension != 2)
         has[static_cast<size_t>(in_.mesh.region[static_cast<size_t>(c)])] = 1;
     if (std::ranges::find(has, 0) != has.end()) in_.skip("RFORCE on shells", l->place);
-    const double speed = 2 * std::numbers::pi * l->size * axis.norm() / si("s");
+    const double omega = 2 * std::numbers::pi * l->size * axis.norm() * std::sqrt(factor), speed = omega / si("s");
+    if (speed == 0) continue;
+    spins_.push_back({at, omega * axis.normalized(), l->place});
     for (size_t r = 0; r < has.size(); ++r)
-      if (has[r] && speed != 0)
+      if (has[r])
         tables_ += fmt::format("\n[[load]]   # {}\nkind = \"centrifugal\"\nname = {}\non = {}\nat = {}\naxis = {}\nspeed = {}\n", l->place,
                                toml_text(unique("load", in_.mesh.region_name[r] + "_centrifugal")), toml_text(in_.mesh.region_name[r]),
                                point(at), direction(axis.normalized()), toml_number(std::abs(speed)));
+  }
+}
+
+/// The same on masses at grids, and along beams, where it varies evenly: the force of their mass as drawn.
+void BdfScene::rotation_of_bodies() {
+  for (const Spin& spin : spins_) {
+    const auto pull = [&](const Vec3& x) -> Vec3 { return -options_.scale * spin.omega.cross(spin.omega.cross(x - spin.at)); };
+    for (const BdfMass& m : masses_) {
+      const auto a = row(m.grid, m.place, "CONM2");
+      if (end(a) == End::mean) {
+        in_.skip("RFORCE on the mass of an RBE3", spin.place);
+        continue;
+      }
+      const Mat3 own = axes_at(deck_, std::max<std::int64_t>(m.system, 0), X(a), m.place);
+      const Vec3 arm = end(a) != End::body ? Vec3(Vec3::Zero()) : m.system < 0 ? Vec3(m.offset - X(a)) : Vec3(own * m.offset);
+      const Vec3 F = m.mass * pull(X(a) + arm);
+      force_.try_emplace(a, Vec3::Zero(), spin.place).first->second.first += F;
+      const Mat3 J = own * m.inertia * own.transpose();
+      if (const Vec3 M = options_.scale * arm.cross(F) - spin.omega.cross(J * spin.omega); end(a) == End::body && M.norm() > 0)
+        moment_.try_emplace(a, Vec3::Zero(), spin.place).first->second.first += M;
+    }
+    for (const auto& b : deck_.beams) {
+      const DeckSection& s = section_of_beam(deck_, b).section;
+      const double rho = deck_.materials.at(deck_.material_of.at(b.property)).data.density;
+      const double mass = (rho > 0 ? rho * s.area(0.3, b.place).A * options_.scale * options_.scale : 0) + s.line_mass;
+      const MadeBeam& beam = made_beams_.at(b.id);
+      const Vec3 from = mass * pull(beam.start), to = mass * pull(beam.start + beam.length() * beam.axes.col(0));
+      if (from.norm() + to.norm() == 0) continue;
+      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"line\"\nname = {}\non = {}\nforce_per_length = {}\nforce_per_length_end = {}\n",
+                             spin.place, toml_text(unique("load", beam.name + "_centrifugal")), toml_text(beam.name), list(from, "N/m"),
+                             list(to, "N/m"));
+    }
   }
 }
 
@@ -105,6 +171,30 @@ void BdfScene::distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const 
   if (!shares) return in_.skip("load on an RBE3 that its grids cannot carry", place);
   for (size_t i = 0; i < points.size(); ++i)
     force_.try_emplace(row(m.of[i].first, m.place, "RBE3"), Vec3::Zero(), place).first->second.first += (*shares)[i];
+}
+
+/// A pressure that varies evenly over a shell, as forces of its grids: the integrals of N_a p over the element as drawn.
+void BdfScene::varying_pressures() {
+  std::unordered_map<std::int64_t, const BdfDeck::Cell*> shell;
+  for (const auto& s : deck_.shells) shell.try_emplace(s.id, &s);
+  for (const auto& [factor, l] : loads_) {
+    if (l->kind != BdfLoad::Kind::pressure || l->at_corners.empty()) continue;
+    for (const auto element : l->elements) {
+      const auto s = shell.find(element);
+      if (s == shell.end() || info(s->second->shape).n_corners != info(s->second->shape).n_nodes) {
+        in_.skip("PLOAD4 that varies over the face", l->place);
+        continue;
+      }
+      Rows rows;
+      std::vector<Vec3> x;
+      for (const auto grid : s->second->nodes) rows.push_back(row(grid, l->place, "PLOAD4")), x.push_back(X(rows.back()));
+      const Vec3 way = axes_at(deck_, l->system, x[0], l->place) * l->direction;
+      const std::vector<Vec3> f = forces_of_pressure(x, l->at_corners, way);
+      for (size_t i = 0; i < rows.size(); ++i)
+        force_.try_emplace(rows[i], Vec3::Zero(), l->place).first->second.first += factor * options_.scale * options_.scale * f[i];
+    }
+    in_.notes.push_back(fmt::format("{}: PLOAD4 that varies becomes forces of the grids, which do not turn with the shell", l->place));
+  }
 }
 
 void BdfScene::nodal_loads() {
@@ -126,6 +216,12 @@ void BdfScene::nodal_loads() {
     }
     switch (end(a)) {
       case End::mean: {
+        const Mat3 own = axes(a);
+        for (int k = 0; k < 3; ++k)  // along components that the mean leaves free the grid has no stiffness
+          if (!(mean_.at(a)->components >> (force ? k : k + 3) & 1)) {
+            if (std::abs(own.col(k).dot(v)) > 1e-9 * v.norm()) in_.skip("load on an RBE3 along a component that it leaves free", l->place);
+            v -= own.col(k) * own.col(k).dot(v);
+          }
         Pair& p = on_mean[a];
         (force ? p.F : p.M) += v;
         if (p.place.empty()) p.place = l->place;
@@ -196,6 +292,10 @@ void BdfScene::line_loads() {
       continue;
     }
     const MadeBeam& beam = made->second;
+    if (beam.apart) {
+      in_.skip("PLOAD1 on a beam whose neutral axis is off its shear centre", l->place);
+      continue;
+    }
     const double whole = beam.length(), unit = l->as_share ? whole : 1;
     const size_t from = beam.section(l->from_to[0] * unit), to = beam.section(l->from_to[1] * unit);
     const Vec3 way = l->own_axes ? Vec3(beam.axes * l->direction) : l->direction;
@@ -262,7 +362,7 @@ void BdfScene::pressures() {
   std::unordered_map<std::int64_t, const BdfDeck::Cell*> shell;
   for (const auto& s : deck_.shells) shell.try_emplace(s.id, &s);
   for (const auto& [factor, l] : loads_) {
-    if (l->kind != BdfLoad::Kind::pressure) continue;
+    if (l->kind != BdfLoad::Kind::pressure || !l->at_corners.empty()) continue;
     std::int64_t missing = 0;
     const auto by_grids = [&, factor = factor, l = l](const std::vector<std::int64_t>& grids) {
       corners.emplace_back();

@@ -36,6 +36,10 @@ void read_shell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   } else if (there > 0)
     in.skip(e.name + ": mid-side nodes on some edges only", d.place());
   if (!d.empty(offset)) s.offset = d.number(offset);
+  if (d.is_integer(offset - 1))
+    s.material_system = d.integer(offset - 1);
+  else
+    s.theta = d.number(offset - 1);
   for (size_t i = 0; i < corners; ++i) {
     if (d.empty(thickness + i)) continue;
     s.own[i] = d.number(thickness + i);
@@ -49,23 +53,39 @@ void read_shell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   add(deck, std::move(s), deck.shells);
 }
 
-/// EID PID GA GB X1 X2 X3 (or G0) OFFT; PA PB W1A W2A W3A W1B W2B W3B
-void read_beam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+/// X1 X2 X3 (or G0) OFFT, from the fifth field on.
+template <class Beam>
+void read_orientation(const BdfEntry& e, Beam& b) {
   const auto& d = e.data;
-  BdfDeck::Thin b{{Shape::bar2, d.integer(0), property_of(d, 1), {d.integer(2), d.integer(3)}, d.place(0)}};
   if (d.empty(5) && d.empty(6) && d.is_integer(4))
     b.towards = d.integer(4);
   else
     b.v = Vec3(d.number(4), d.number(5), d.number(6));
-  b.card = e.name;
   if (!d.empty(7) && !d.is_integer(7)) b.axes = upper(d.text(7));
-  if (b.axes.size() != 3 || b.axes.find_first_not_of("GBO") != b.axes.npos || b.axes[0] == 'O')
+  if (!b.axes.empty() && (b.axes.size() != 3 || b.axes.find_first_not_of("GBO") != b.axes.npos || b.axes[0] == 'O'))
     throw Error(d.place(7), fmt::format("{}: OFFT {} is not three of G, B, O, the first of them G or B", e.name, b.axes));
+}
+
+/// EID PID GA GB X1 X2 X3 (or G0) OFFT; PA PB W1A W2A W3A W1B W2B W3B
+void read_beam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  BdfDeck::Thin b{{Shape::bar2, d.integer(0), d.empty(1) ? 0 : d.integer(1), {d.integer(2), d.integer(3)}, d.place(0)}};
+  b.card = e.name;
+  read_orientation(e, b);
   for (size_t k = 0; k < 2; ++k)
     if (!d.empty(8 + k) && d.text(8 + k) != "0") b.pins[k] = components(d, 8 + k);
   for (int i = 0; i < 3; ++i) b.start[i] = d.number(10 + static_cast<size_t>(i)), b.end[i] = d.number(13 + static_cast<size_t>(i));
   if (e.name == "CBEAM" && (d.number(16) != 0 || d.number(17) != 0)) in.skip("CBEAM: warping grids SA, SB", d.place(16));
   add(deck, std::move(b), deck.beams);
+}
+
+/// - PID - - X1 X2 X3 (or G0) OFFT
+void read_beam_default(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  BdfBeamDefault& b = deck.beam_default[e.name == "BAROR" ? "CBAR" : "CBEAM"];
+  if (!b.place.empty()) throw Error(e.data.place(), e.name + " is given twice", "give it once");
+  b.place = e.data.place();
+  if (!e.data.empty(1)) b.property = e.data.integer(1);
+  read_orientation(e, b);
 }
 
 void add_property(const BdfEntry& e, BdfDeck& deck, BdfThin section) {
@@ -80,7 +100,8 @@ void read_pshell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (d.number(7) != 0) in.skip("PSHELL: mass per area NSM", d.place(7));
   BdfThin s;
   s.thickness = d.number(2);
-  if (d.empty(3) || d.integer(3) != (d.empty(1) ? 0 : d.integer(1)))
+  s.bends_only = d.empty(1) && !d.empty(3);
+  if (d.empty(3) || (d.integer(3) != (d.empty(1) ? 0 : d.integer(1)) && !s.bends_only))
     s.no_solid = "PSHELL with another material in bending, or none";
   else if ((!d.empty(4) && d.number(4) != 1) || !d.empty(10))
     s.no_solid = "PSHELL with 12I/T^3 other than 1, or MID4";
@@ -89,7 +110,7 @@ void read_pshell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (!d.empty(6) && std::abs(d.number(6) - 5. / 6) > 0.01) in.skip("PSHELL: TS/T, other than 5/6", d.place(6));
   d.ignore_rest();  // where stresses are asked for
   add_property(e, deck, s);
-  if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
+  if (!d.empty(1) || s.bends_only) deck.material_of.try_emplace(d.integer(0), d.integer(s.bends_only ? 3 : 1));
 }
 
 /// PID Z0 NSM SB FT TREF GE LAM; MID1 T1 THETA1 SOUT1 MID2 T2 ...: a blank MID or T is that of the layer before.
@@ -99,16 +120,20 @@ void read_pcomp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   std::int64_t material = 0, first = 0;
   double t = 0, sum = 0;
   bool same = true;
+  BdfThin s;
   for (size_t i = 8; i < d.fields.size(); i += 4) {
     if (d.empty(i) && d.empty(i + 1) && d.empty(i + 2)) continue;
     if (!d.empty(i)) material = d.integer(i);
     if (!d.empty(i + 1)) t = d.number(i + 1);
-    if (first == 0) first = material;
+    if (first == 0) first = material, s.angle = d.number(i + 2);
+    if (std::abs(std::remainder(d.number(i + 2) - s.angle, 180)) > 0.05 && s.turned_layers.empty()) s.turned_layers = d.place(i + 2);
     same = same && material == first;
     sum += t;
   }
+  for (size_t i = 3; i < 6; ++i) d.text(i);                    // limits of failure, temperature of reference
+  for (size_t i = 11; i < d.fields.size(); i += 4) d.text(i);  // where stresses are asked for
+  if (d.number(6) != 0) in.skip("PCOMP: structural damping GE", d.place(6));
   const double layers = upper(d.text(7)) == "SYM" ? 2 : 1;
-  BdfThin s;
   s.thickness = layers * sum;
   if (!d.empty(1)) s.offset = d.number(1) + s.thickness / 2;
   if (!same) s.no_solid = "PCOMP of several materials";
@@ -125,12 +150,21 @@ void set_shear(DeckSection& s, double K1, double K2, bool stiff) {
   s.no_shear_strain = {stiff && !(K2 > 0), stiff && !(K1 > 0)};
 }
 
+/// That of the section at each end by its neutral axis: axis 1 is against z, axis 2 along y.
+void set_shear_centre(BdfThin& s) {
+  const auto at = [&](size_t end) { return std::array{s.neutral[end][1], s.neutral[end][0] == 0 ? 0 : -s.neutral[end][0]}; };
+  if (s.neutral[0] != s.neutral[1] && !s.end.given()) s.end = s.section;
+  s.section.shear_centre = at(0);
+  if (s.end.given()) s.end.shear_centre = at(1);
+}
+
 /// PID MID A I1 I2 J NSM; stress points; K1 K2 I12.
 void read_pbar(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
   BdfThin s;
   s.section = general_section(d.number(2), d.number(3), d.number(4), d.number(5));
   s.section.line_mass = d.number(6), s.section.I12 = -d.number(18);
+  for (size_t i = 8; i < 16; ++i) d.number(i);  // where stresses are asked for
   set_shear(s.section, d.number(16), d.number(17), true);
   add_property(e, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
@@ -173,21 +207,26 @@ void read_pbeam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (at_b != at_a) s.end = section(at_b);
   for (size_t i = 4; i < 8; ++i)
     if (d.number(line + i) != 0) in.skip(i < 6 ? "PBEAM: inertia NSI of its NSM" : "PBEAM: warping CW", d.place(line + i));
-  for (size_t i = 8; i < 16; ++i)
-    if (d.number(line + i) != 0) {
-      in.skip(i < 12 ? "PBEAM: NSM off the shear centre, M1, M2" : "PBEAM: neutral axis off the shear centre, N1, N2", d.place(line + i));
-      break;
-    }
+  bool apart = false;  // NSM from the neutral axis
+  for (size_t k = 0; k < 4; ++k) {
+    const double M = d.number(line + 8 + k, k < 2 ? 0 : d.number(line + 6 + k)),
+                 N = d.number(line + 12 + k, k < 2 ? 0 : d.number(line + 10 + k));
+    s.neutral[k / 2][k % 2] = N;
+    apart = apart || M != N;
+  }
+  if (apart && s.section.line_mass != 0) in.skip("PBEAM: NSM off the neutral axis", d.place(line + 8));
+  set_shear_centre(s);
   add_property(e, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
-/// Off whose centre of area the shear centre lies: CBAR takes both as one.
-DeckSection without_shear_centre(const char* kind, const std::vector<double>& v) {
+/// Off whose centre of area the shear centre lies.
+DeckSection with_shear_centre(const char* kind, const std::vector<double>& v) {
   const SectionArea a =
       DeckSection{kind, {{"width", v[0]}, {"height", v[1]}, {"flange", v[2]}, {"web", v[3]}}}.area(0.3, fmt::format("TYPE {}", kind));
   DeckSection out = general_section(a.A, a.I1, a.I2, a.J);
   out.shear = {a.shear_1, a.shear_2};
+  out.shear_centre = {a.s1, a.s2};
   return out;
 }
 
@@ -233,11 +272,11 @@ const std::map<std::string, BeamShape> beam_shapes{
               {{-v[1] / 2, v[1] / 2, 0, v[4]}, {-v[3] / 2, v[3] / 2, v[4], v[0] - v[5]}, {-v[2] / 2, v[2] / 2, v[0] - v[5], v[0]}});
         return DeckSection{"I", {{"width", v[1]}, {"height", v[0]}, {"flange", v[4]}, {"web", v[3]}}};
       }}},
-    {"T", {4, [](const std::vector<double>& v) { return without_shear_centre("T", v); }}},
+    {"T", {4, [](const std::vector<double>& v) { return with_shear_centre("T", v); }}},
     {"CHAN",
      {4,
       [](const std::vector<double>& v) {
-        return without_shear_centre("C", {v[0], v[1], v[3], v[2]});
+        return with_shear_centre("C", {v[0], v[1], v[3], v[2]});
       }}},
     {"I1",
      {4,
@@ -322,13 +361,12 @@ const std::map<std::string, BeamShape> beam_shapes{
                            {-w, w, h - t, h}});
       }}},
 };
-const std::set<std::string> off_centre{"T", "CHAN", "T1", "T2", "CHAN1", "CHAN2", "BOX1", "L", "HAT", "HAT1"};  // shear centre elsewhere
 
 /// The same by its numbers.
 DeckSection general_of(const DeckSection& s, const std::string& place) {
   const SectionArea a = s.area(0.3, place);
   DeckSection out = general_section(a.A, a.I1, a.I2, a.J);
-  out.I12 = s.I12, out.line_mass = s.line_mass, out.shear = {a.shear_1, a.shear_2};
+  out.I12 = s.I12, out.line_mass = s.line_mass, out.shear = {a.shear_1, a.shear_2}, out.shear_centre = s.shear_centre;
   return out;
 }
 
@@ -336,6 +374,7 @@ DeckSection general_of(const DeckSection& s, const std::string& place) {
 void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
   const std::string type = upper(d.text(3));
+  d.text(2);  // the library that has the type
   const auto shape = beam_shapes.find(type);
   const auto refuse = [&](const std::string& what) {
     return Error(d.place(3), fmt::format("{} {}: {} is not read", e.name, d.integer(0), what),
@@ -352,8 +391,8 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   s.section = shape->second.of(dims);
   if (!s.section.given())
     throw refuse("TYPE " + type + (type == "BOX1" && dims[2] != dims[3] && dims[4] != dims[5] ? " that is askew" : " with such walls"));
-  if (e.name == "PBEAML" && (off_centre.contains(type) || (type == "I" && s.section.kind == "general")))
-    in.skip("PBEAML: neutral axis off the shear centre", d.place(3));
+  const auto end_of = [](const DeckSection& section) { return std::array{-section.shear_centre[1], section.shear_centre[0]}; };
+  s.neutral = {end_of(s.section), end_of(s.section)};
   s.section.line_mass = d.number(8 + dims.size());
   std::vector<double> at_a = dims;
   at_a.push_back(s.section.line_mass);
@@ -370,12 +409,26 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
     if (!s.end.given()) throw refuse("TYPE " + type + " with such walls at end B");
     s.end.line_mass = at_b.back();
     if (s.end.kind != s.section.kind) s.section = general_of(s.section, d.place()), s.end = general_of(s.end, d.place());
+    s.neutral[1] = end_of(s.end);
   }
+  if (e.name == "PBARL") s.neutral = {};  // CBAR takes both centres as one
+  set_shear_centre(s);
+  if (s.section.line_mass != 0 && s.section.shear_centre != std::array{0., 0.})
+    in.skip("PBEAML: NSM off the neutral axis", d.place(8 + dims.size()));
   add_property(e, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
 }  // namespace
+
+void resolve_beams(BdfDeck& deck) {
+  for (BdfDeck::Thin& b : deck.beams) {
+    const BdfBeamDefault& otherwise = deck.beam_default[b.card];
+    if (b.property == 0) b.property = otherwise.property != 0 ? otherwise.property : b.id;
+    if (b.towards == 0 && b.v == Vec3::Zero()) b.towards = otherwise.towards, b.v = otherwise.v;
+    if (b.axes.empty()) b.axes = otherwise.axes.empty() ? "GGG" : otherwise.axes;
+  }
+}
 
 const BdfThin& section_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
   const auto found = deck.thin.find(b.property);
@@ -425,6 +478,9 @@ BdfBeamPlace place_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
       throw Error(b.place, fmt::format("beam {}: its orientation lies along it, or is none", b.id));
     out.up = along.unitOrthogonal();
   }
+  const Vec3 z = along.cross(out.up).normalized(), y = z.cross(along).normalized();
+  const auto& neutral = section_of_beam(deck, b).neutral;
+  out.a += neutral[0][0] * y + neutral[0][1] * z, out.b += neutral[1][0] * y + neutral[1][1] * z;
   return out;
 }
 
@@ -470,6 +526,8 @@ std::span<const BdfCard> bdf_thin_cards() {
       {"CQUAD8", read_shell<4, 4, 15, 10, 16>},
       {"CBAR", read_beam},
       {"CBEAM", read_beam},
+      {"BAROR", read_beam_default},
+      {"BEAMOR", read_beam_default},
       {"PSHELL", read_pshell},
       {"PCOMP", read_pcomp},
       {"PBAR", read_pbar},

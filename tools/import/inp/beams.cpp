@@ -102,7 +102,7 @@ std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const I
       if (m.alpha != 0 || m.beta != 0) in.skip("*DAMPING of beams", s.place);
       if (m.kind != "stvk" || !m.no_law.empty()) in.skip("*PLASTIC of beams, which are linear elastic", s.place);
       if (with_material && !of_cells.contains(s.law) && materials.insert(s.law).second) out += m.table(m.name, o.units);
-      out += section_table(name, section, with_material, m, o.units, o.scale, s.place);
+      out += section_table(name, section, section, m, o.units, o.scale, s.place);
     }
     std::vector<Vec3> X;
     for (const auto node : b.nodes) X.push_back(d.bodies.at(node).X);

@@ -326,6 +326,7 @@ DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::ar
       A += a, moment += a * (p.from_2 + p.to_2) / 2;
     }
     DeckSection s = section_of_rectangles(parts, l.place(0));
+    s.shear_centre = {};  // these beams have it in their centre of area
     if (!s.given())
       throw Error(l.place(0), fmt::format("{}, SECTION=I: these sizes make no section", card.name), "l, h, b1, b2, t1, t2, t3");
     r.skip("*BEAM SECTION, SECTION=I of two flanges that differ: its shear centre off its centre of area");
