@@ -255,6 +255,22 @@ TEST_F(ImportBdfDecks, APressureThatVariesIsThatOfItsShell) {
   EXPECT_LT((M - Vec3(17 / 12., -1.25, 0)).norm(), 1e-12);
 }
 
+TEST_F(ImportBdfDecks, ARangeOfElementsUnderAPressureMayHaveGaps) {
+  const std::string plate =
+      "SOL 101\nCEND\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\n"
+      "GRID,5,,2.,0.,0.\nGRID,6,,2.,1.,0.\nCQUAD4,1001,7,1,2,3,4\nCQUAD4,2001,7,2,5,6,3\nPSHELL,7,1,.1,1,,1\n"
+      "MAT1,1,1.+9,,0.\n";
+  for (const char* load : {"PLOAD2,2,5.,1001,THRU,4004\n", "PLOAD4,2,1001,5.,,,,THRU,4004\n"}) {
+    const Scene s = scene(plate + load, "--thicken");
+    ASSERT_EQ(s.entries("load").size(), 1u) << load;
+    const auto facets = read_mesh_file(place / "out.h5").mesh.facet_sets.at(s.entries("load")[0].text("on"));
+    EXPECT_EQ(facets.size(), 2u) << load;
+    EXPECT_TRUE(s.entries("left_out").empty()) << load;
+  }
+  scene(plate + "PLOAD2,2,5.,5001,THRU,5004\n", "--thicken");
+  expect_said("not read: PLOAD on elements that are not there (1, a.bdf:");
+}
+
 TEST_F(ImportBdfDecks, AMeanThatLeavesComponentsFreeCarriesThoseThatItHas) {
   const std::string cube =
       "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,0.,0.,1.\nGRID,6,,1.,0.,1.\nGRID,7,,1.,1.,1.\n"

@@ -222,8 +222,19 @@ void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards&
   }
 }
 
-/// Of ranges of grids the grids that are there.
+/// Of ranges of grids the grids that are there, of ranges of elements under a pressure the shells and solids; of an empty one its first.
 void resolve_ranges(BdfDeck& deck) {
+  std::set<std::int64_t> pressed;
+  for (const auto& s : deck.shells) pressed.insert(s.id);
+  for (const auto& [id, r] : deck.cell_row) pressed.insert(id);
+  for (auto& [sid, loads] : deck.loads)
+    for (BdfLoad& l : loads)
+      for (const BdfRange& r : l.ranges) {
+        const size_t before = l.elements.size();
+        for (auto id = pressed.lower_bound(r.first); id != pressed.end() && *id <= r.last; ++id)
+          if ((*id - r.first) % r.by == 0) l.elements.push_back(*id);
+        if (l.elements.size() == before) l.elements.push_back(r.first);
+      }
   std::vector<std::int64_t> ids = deck.node_id;
   std::ranges::sort(ids);
   for (auto& [sid, lines] : deck.supports)

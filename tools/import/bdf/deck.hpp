@@ -39,6 +39,7 @@ struct BdfLoad {
   Vec3 direction = Vec3::Zero();             // in `system`; of a pressure: zero for one along the normal
   std::array<std::int64_t, 2> towards{};     // FORCE1, MOMENT1: along the line of two grids
   std::vector<std::int64_t> elements = {};   // of a pressure
+  std::vector<BdfRange> ranges = {};         // the same, of which not every number needs to be there
   std::array<std::int64_t, 2> face{};        // PLOAD4 on solids: G1, and G3 or G4
   std::vector<std::int64_t> corners = {};    // PLOAD: a face by its grids
   std::vector<double> at_corners = {};       // PLOAD4 that varies: P1 to P4

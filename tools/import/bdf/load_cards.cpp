@@ -99,7 +99,7 @@ void read_pload4(const BdfEntry& e, BdfDeck& deck, Imported& in) {
     const auto last = d.integer(7);
     if (last < l.elements[0] || last - l.elements[0] > 100'000'000)
       throw Error(d.place(7), fmt::format("PLOAD4: {} THRU {} names no usable range", l.elements[0], last));
-    for (auto i = l.elements[0] + 1; i <= last; ++i) l.elements.push_back(i);
+    l.ranges = {{l.elements[0], last, 1}}, l.elements.clear();
   } else {
     l.face = {d.empty(6) ? 0 : d.integer(6), d.empty(7) ? 0 : d.integer(7)};
   }
@@ -125,7 +125,7 @@ void read_pload2(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
   BdfLoad l{BdfLoad::Kind::pressure};
   l.place = d.place(), l.size = d.number(1);
-  grid_list(d, 2, l.elements);
+  grid_list(d, 2, l.elements, l.ranges);
   deck.loads[d.integer(0)].push_back(std::move(l));
 }
 
