@@ -263,7 +263,7 @@ class BucklingSteps final : public Steps {
       throw Error(where, "nothing buckles under these loads",
                   "linear regions stay straight without stiffening = true; tension alone buckles nothing");
     for (const FoundShape& s : shapes) record(s);
-    run_.figures.lists.emplace_back("load_factors", as_json(shapes));
+    run_.lists.emplace_back("load_factors", as_json(shapes));
     run_.report.table = as_table(shapes);
     run_.report.t = static_cast<double>(shapes.size());
     for (const FoundShape& s : shapes)

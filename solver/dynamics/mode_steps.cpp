@@ -80,7 +80,7 @@ class ModeSteps final : public Steps {
     if (modes.empty()) throw Error(time_.where("analysis"), "nothing that has mass can move: there are no modes");
     if (!spins) check_rest(modes);
     for (const FoundMode& m : modes) record(m);
-    run_.figures.lists.emplace_back("modes", as_json(modes));
+    run_.lists.emplace_back("modes", as_json(modes));
     run_.report.table = as_table(modes, system.mass);
     run_.report.t = static_cast<double>(modes.size());
     for (const FoundMode& m : modes)

@@ -90,7 +90,7 @@ class PathSteps final : public Steps {
     progress.done();
     run_.report.t = run_.report.steps;
     run_.report.table = table();
-    run_.figures.lists.emplace_back("turns", as_json(at_.turns));
+    run_.lists.emplace_back("turns", as_json(at_.turns));
     run_.report.complete = true;
   }
 

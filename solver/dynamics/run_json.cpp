@@ -64,7 +64,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   j.add("clocks", Json::list_of(run.integrator->timed()));
   if (run.analysis == Analysis::dynamic) j.add("error_estimate", error_json(run));
   if (run.plan.asked > 0) j.add("rejected_steps", figures.rejected);
-  for (const auto& [key, list] : figures.lists) j.add(key, list);
+  for (const auto& [key, list] : run.lists) j.add(key, list);
   if (figures.unstable >= 0) j.add("unstable_states", figures.unstable);
   const double det = run.audit->least_det();
   j.add("energy_balance", {run.audit->balance(), 6});

@@ -21,7 +21,6 @@ namespace hilo {
 struct RunFigures {
   double assembled = 0, projected = 0;  // changes of positions at the start [m], of velocities [m/s]
   double local = -1;                    // sum of local position errors [m], where the tolerance chooses steps of a method of second order
-  std::vector<Json::Member> lists;      // modes, load factors, turns of a path or jumps to other branches
   long rejected = 0;                    // steps
   long unstable = -1;                   // states of a static run that were kept though not stable
 };
@@ -46,6 +45,7 @@ struct RunParts {
   State state = {};  // accepted
   RunReport report = {};
   RunFigures figures = {};
+  std::vector<Json::Member> lists = {};  // of modes, load factors, turns of a path or jumps to other branches, for run.json
   Impulses impulses = {};
   StepPlan plan = {};
   ErrorEstimate estimate = {};

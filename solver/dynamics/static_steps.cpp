@@ -97,12 +97,12 @@ class StaticSteps final : public Steps {
     run_.report.t = state.t;
     if (examined_) run_.figures.unstable = at_.unstable_states;
     if (!at_.jumps.empty())
-      run_.figures.lists.emplace_back("jumps", Json::list_of(
-                                                   at_.jumps,
-                                                   [](const Jumped& j) -> Json {
-                                                     return {{"from", {j.from, 12}}, {"to", {j.to, 12}}, {"way", {j.way, 6}}};
-                                                   },
-                                                   Json::In::lines));
+      run_.lists.emplace_back("jumps", Json::list_of(
+                                           at_.jumps,
+                                           [](const Jumped& j) -> Json {
+                                             return {{"from", {j.from, 12}}, {"to", {j.to, 12}}, {"way", {j.way, 6}}};
+                                           },
+                                           Json::In::lines));
     if (run_.talk && is_large())
       fmt::print(stderr, "stability was not examined: beyond {} unknowns it would cost more than the load steps\n", 3 * most_blocks);
     else if (run_.talk && !examined_)
