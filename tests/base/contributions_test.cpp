@@ -72,7 +72,7 @@ TEST(Contributions, RowsAndUnknownsHaveNoNamesAboveTheSystem) {
       EXPECT_FALSE(std::regex_search(code, found, blocks)) << name << " names " << found.str();
     }
     for (auto at = std::sregex_iterator(code.begin(), code.end(), parts); at != std::sregex_iterator(); ++at)
-      EXPECT_TRUE((*at)[1] == "Solids" || (*at)[1] == "LinearRegions" || (*at)[1] == "NaturalModes" || (*at)[1] == "BucklingModes" ||
+      EXPECT_TRUE((*at)[1] == "Solids" || (*at)[1] == "LinearRegions" || (*at)[1] == "ModeOutput" || (*at)[1] == "BucklingModes" ||
                   (*at)[1] == "LoadPath")
           << name << ", " << (*at)[1];
   }
