@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON that is written: values that know how they are put down, members and items in the order given.
+// JSON that is written: values that know how they are put down, members and items in the order given.  nlohmann's, which reads it, puts
+// every item on a line of its own, or all of them on one.
 #pragma once
 #include <concepts>
 #include <cstddef>

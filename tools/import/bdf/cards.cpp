@@ -52,7 +52,8 @@ size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out
 BdfCards& bdf_cards() {
   static BdfCards all = [] {
     BdfCards list("entry of .bdf decks", {});
-    for (const auto& family : {bdf_mesh_cards(), bdf_thin_cards(), bdf_material_cards(), bdf_load_cards(), bdf_link_cards()})
+    for (const auto& family :
+         {bdf_mesh_cards(), bdf_thin_cards(), bdf_section_cards(), bdf_material_cards(), bdf_load_cards(), bdf_link_cards()})
       for (const BdfCard& card : family) list.add(card);
     return list;
   }();
