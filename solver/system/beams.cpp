@@ -91,12 +91,21 @@ void set_linked_mass(const SectionsAlong& sections, const BeamSection& mean, dou
 }
 
 /// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds of the shares u of an element by itself.
-std::array<Eigen::Matrix<double, 8, 1>, 3> line_shares(const BeamSection& mean, double L) {
-  std::array<Eigen::Matrix<double, 8, 1>, 3> out;
+BeamCell::Shares shares_across(const BeamSection& mean, double L) {
+  BeamCell::Shares out;
   for (auto& column : out) column.setZero();
   each_share(mean, L, [&](size_t, double t, const Eigen::Matrix<double, 8, 1>& u, double ds) {
     out[0] += ds * (1 - t) * (1 - t) * u, out[1] += ds * t * (1 - t) * u, out[2] += ds * t * t * u;
   });
+  return out;
+}
+
+/// The same of u = 1 - t and t at the origins.
+BeamCell::Shares shares_along(double L) {
+  BeamCell::Shares out;
+  for (auto& column : out) column.setZero();
+  out[0][0] = out[2][4] = L / 4;
+  out[0][4] = out[1][0] = out[1][4] = out[2][0] = L / 12;
   return out;
 }
 
@@ -201,7 +210,8 @@ void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const Section
   cell.arc.law = arc_stiffness(measures_of(cell, q), C);
   cell.arc.alpha = alpha, cell.arc.beta = beta, cell.size = mean.size;
   set_linked_mass(sections, mean, cell.arc.law.length, cell.arc);
-  cell.line = line_shares(mean, cell.arc.law.length);
+  cell.across = shares_across(mean, cell.arc.law.length), cell.along = shares_along(cell.arc.law.length);
+  cell.axis = (b.at - a.at).normalized();
   cells.push_back(std::move(cell));
 }
 
@@ -255,12 +265,17 @@ std::vector<Beams::LineForces> Beams::line_forces(const Stage& s) const {
       const BeamCell& cell = cells[l.first + k];
       const auto& [a, b] = l.at[k];
       if (!l.load.follower) {
-        out[l.first + k].F += factor * ((cell.line[0] + cell.line[1]) * a.transpose() + (cell.line[1] + cell.line[2]) * b.transpose());
+        const auto add = [&](const BeamCell::Shares& of, const Mat3& part) {
+          out[l.first + k].F += factor * ((of[0] + of[1]) * (part * a).transpose() + (of[1] + of[2]) * (part * b).transpose());
+        };
+        const Mat3 on_axis = cell.axis * cell.axis.transpose();
+        add(cell.across, Mat3::Identity() - on_axis), add(cell.along, on_axis);
         continue;
       }
       for (int i = 0; i < 3; ++i) {  // (p_A (1 - t) + p_B t) along directors that are linear between the ends
-        out[l.first + k].K.col(1 + i) += factor * (a[i] * cell.line[0] + b[i] * cell.line[1]);
-        out[l.first + k].K.col(5 + i) += factor * (a[i] * cell.line[1] + b[i] * cell.line[2]);
+        const BeamCell::Shares& of = i == 2 ? cell.along : cell.across;
+        out[l.first + k].K.col(1 + i) += factor * (a[i] * of[0] + b[i] * of[1]);
+        out[l.first + k].K.col(5 + i) += factor * (a[i] * of[1] + b[i] * of[2]);
       }
     }
   }

@@ -20,8 +20,11 @@ namespace hilo {
 struct BeamCell {
   std::array<int, 2> body{};
   arc::ArcCell<double> arc;
-  /// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds, u the shares of the points of the sections in a point at t [m, m^2]
-  std::array<Eigen::Matrix<double, 8, 1>, 3> line;
+  /// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds, u the shares of the points of the sections in a point at t [m, m^2]: across the
+  /// axis as the cell bends, and along it as it stretches
+  using Shares = std::array<Eigen::Matrix<double, 8, 1>, 3>;
+  Shares across, along;
+  Vec3 axis;        // as drawn
   double size = 0;  // of the section [m]
 };
 

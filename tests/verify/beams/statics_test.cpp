@@ -86,6 +86,21 @@ TEST_F(BeamStatics, AUniformLoadBendsACantilever) {
   }
 }
 
+// From q at the root to none at the tip: q L^2/6EA along the beam, wherever it points; follower or not.
+TEST_F(BeamStatics, ALoadAlongTheAxisThatFadesIsExactOfOneCell) {
+  const double EA = 1e6, L = 2, q = 3;
+  const Vec3 along = Vec3(1, 2, -0.5).normalized();
+  const std::string beam = plain_section(1e5, EA, 100, 100) +
+                           beam_of(fmt::format("[[0, 0, 0], [{:.17g}, {:.17g}, {:.17g}]]", L * along.x(), L * along.y(), L * along.z()), 1);
+  for (const bool turns : {false, true}) {
+    const std::string load = fmt::format(
+        "[[load]]\nkind = \"line\"\nname = \"q\"\non = \"arm\"\nforce_per_length = {}\nforce_per_length_end = [0, 0, 0]\nfollower = {}\n",
+        list(turns ? Vec3(0, 0, q) : Vec3(q * along)), turns);
+    const Vec3 u = tip(beam + load + tip_probe() + in_steps(1)) - L * along;
+    EXPECT_NEAR(u.dot(along) / (q * L * L / (6 * EA)), 1, 1e-5) << turns;
+  }
+}
+
 // Small loads, one cell: exact of Timoshenko's beam along both axes, in stretch and in twist, wherever the beam points.
 TEST_F(BeamStatics, OneCellIsExactUnderEndLoads) {
   const double E = 2e11, nu = 0.3, G = E / 2.6, L = 1.5, b = 0.02, h = 0.05, k = 10 * (1 + nu) / (12 + 11 * nu), A = b * h;
