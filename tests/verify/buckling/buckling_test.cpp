@@ -163,7 +163,7 @@ TEST_F(Buckling, IsRefusedByName) {
   says(refused(column()), "no load grows");
   says(refused(column("") + push_end), "is free to move");
   says(refused(column() + push_end, "start = \"equilibrium\"\n"), "grow from the drawn state");
-  says(refused(column() + push_end, "", "mpirun -n 2 hilo-solve"), "on one rank");
+  says(refused(column() + push_end, "", "export " + for_ranks + "\nmpirun -n 2 hilo-solve"), "on one rank");
   says(refused(column() + load("line", "follows", "arm", "force_per_length = [0, 0, -1]\nfollower = true\n")), "no potential");
   says(refused(column() + push_end +
                motion("translation", "lift", "arm.end", "displacement = [0.1, 0, 0]\nhistory = {t = [0, 1], value = [0, 1]}\n")),
