@@ -14,7 +14,7 @@ namespace hilo {
 struct RunBeam {
   std::string name;
   BeamLine line;
-  std::vector<std::string> on;     // what each section rides on: a body of its own, or what `a` and `b` name
+  std::vector<std::string> on;  // what each section rides on: a body of its own, or what `a` and `b` name
   struct Section {
     std::optional<SectionFace> face = {};  // none: its numbers are all that is known of the section
     std::optional<SectionArea> area = {};  // none of a section that is given by its stiffness

@@ -25,7 +25,9 @@ std::string json_text(std::string_view text) {
 }
 
 Json::Json(double x, int digits)
-    : text_(!std::isfinite(x) ? "null" : digits > 0 ? fmt::format("{:.{}g}", x, digits) : fmt::format("{}", x)) {}
+    : text_(!std::isfinite(x) ? "null"
+            : digits > 0      ? fmt::format("{:.{}g}", x, digits)
+                              : fmt::format("{}", x)) {}
 
 std::string Json::text(size_t indent) const {
   if (!brackets_) return text_;

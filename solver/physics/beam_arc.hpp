@@ -6,8 +6,8 @@
 // With c = (t - 1)/2 = cos(th), f = th/sin(th) and k = (1 - f (1 + c)/2)/(1 - c^2) the strains are the logarithm of the relative motion,
 //   K = f a / L,   Gamma = (p - f/2 a x p + k a x (a x p)) / L,   W = L/2 (eps - eps_ref) C* (eps - eps_ref),   eps = (Gamma, K)
 // exact where they are constant.  C* = (mean of (1 - s Z)^T C(s)^-1 (1 - s Z))^-1, s from the middle, has the compliance of resultants that
-// vary along the element, (n, m)' = -Z (n, m) with Z = [K0x 0; e3x K0x], and of a section that does.  The forces s = L D^T C* (mean eps - eps_ref), D (e1 - e0) = eps1 - eps0 to
-// round-off, keep energy and momenta.
+// vary along the element, (n, m)' = -Z (n, m) with Z = [K0x 0; e3x K0x], and of a section that does.  The forces s = L D^T C* (mean eps -
+// eps_ref), D (e1 - e0) = eps1 - eps0 to round-off, keep energy and momenta.
 #pragma once
 #include <array>
 

@@ -28,9 +28,9 @@ struct SectionArea {
 
 struct BeamSection {
   SectionStiffness C = SectionStiffness::Zero();  // by shear along 1 and 2, stretch, bending about 1 and 2, twist [N, N m, N m^2]
-  double mass = 0;                   // [kg/m]
-  double J11 = 0, J22 = 0, J12 = 0;  // int rho X1^2, X2^2, X1 X2 [kg m]
-  double size = 0;                   // a length of the section, as its radius of gyration [m]
+  double mass = 0;                                // [kg/m]
+  double J11 = 0, J22 = 0, J12 = 0;               // int rho X1^2, X2^2, X1 X2 [kg m]
+  double size = 0;                                // a length of the section, as its radius of gyration [m]
 };
 
 /// The face of a section: points with what stress they take, and cells between them for pictures.

@@ -221,7 +221,8 @@ TEST_F(ImportBeam, ShapesOfRectanglesHaveTheirMoments) {
   }
 }
 
-// One element of 3 m: I1 falls evenly to a quarter, or the height of a bar to a half, which has its shear too; its weight is that of all of it.
+// One element of 3 m: I1 falls evenly to a quarter, or the height of a bar to a half, which has its shear too; its weight is that of all of
+// it.
 TEST_F(ImportBeam, PropertiesThatTaperDoSoEvenly) {
   const auto tip = [&](const std::string& property, const std::string& load) {
     solve(stat + "GRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\nCBEAM,1,5,1,2,0.,1.,0.\n" + steel + property + "SPC1,1,123456,1\n" + load);
@@ -545,7 +546,9 @@ TEST_F(ImportBeam, WhatABeamCannotCarryIsRefusedOrTold) {
   refused("c.bdf -o b.h5", 2, "c.bdf:4:23: CBAR: OFFT OGG is not three of G, B, O, the first of them G or B");
   place.write("d.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBAR,5,9,1.-3,4.-7,1.-7,2.-7\n");
   refused("d.bdf -o b.h5", 2, "d.bdf:5: property 5 of beams has no material (MAT1)");
-  place.write("f.bdf", grids + "CBEAM,1,5,1,2,0.,1.,0.\nPBEAM,5,1,1.-3,4.-7,1.-7,,2.-7,,+\n+,,,,,,,,,+\n+,NO,.5,1.-3,4.-7,1.-7,,2.-7,,+\n+,NO,1.,2.-3,8.-7,2.-7,,4.-7\n");
+  place.write("f.bdf", grids +
+                           "CBEAM,1,5,1,2,0.,1.,0.\nPBEAM,5,1,1.-3,4.-7,1.-7,,2.-7,,+\n+,,,,,,,,,+\n+,NO,.5,1.-3,4.-7,1.-7,,2.-7,,+\n+,NO,"
+                           "1.,2.-3,8.-7,2.-7,,4.-7\n");
   imported("f.bdf", "--scene-out f.toml");
   expect_said("not read: PBEAM with stations between its ends: it varies evenly from end to end");
   place.write("g.bdf", grids + "CBEAM,1,5,1,2,0.,1.,0.\nPBEAML,5,1,,BAR,,,,,+\n+,.1,.1,0.,YES,.5,.1,.1,0.,+\n+,YES,1.,.05,.05,0.\n");
