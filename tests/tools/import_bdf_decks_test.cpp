@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
@@ -16,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-class ImportBdfDecks : public test::Import {
+class ImportBdfDecks : public test::ImportAndRun {
  protected:
   void solve(const std::string& text, const std::string& options = "") {
     place.write("a.bdf", text);
@@ -26,30 +25,8 @@ class ImportBdfDecks : public test::Import {
   }
   /// Where the body of a grid went.
   Vec3 moved(int grid) {
-    const auto ran = succeeded(place.run(fmt::format("hilo-post series run.h5 'body.grid_{}*' -o -", grid)));
-    std::vector<std::vector<double>> rows;
-    std::istringstream lines(ran.out);
-    std::string line, word;
-    std::getline(lines, line);
-    while (std::getline(lines, line)) {
-      std::istringstream words(line);
-      rows.emplace_back();
-      while (std::getline(words, word, ',')) rows.back().push_back(std::strtod(word.c_str(), nullptr));
-    }
-    Vec3 out;
-    for (size_t i = 0; i < 3; ++i) out[static_cast<Eigen::Index>(i)] = rows.back()[i + 1] - rows.front()[i + 1];
-    return out;
-  }
-  double frequency(int mode) {
-    std::istringstream lines(table);
-    std::string line;
-    while (std::getline(lines, line)) {
-      std::istringstream words(line);
-      int n = 0;
-      double f = 0;
-      if (words >> n >> f && n == mode) return f;
-    }
-    return 0;
+    const std::vector<double> v = change(fmt::format("body.grid_{}*", grid));
+    return {v[0], v[1], v[2]};
   }
   /// The displacement of the nodes at x = `at` along z, their mean.
   double lift(double at) {
@@ -66,7 +43,6 @@ class ImportBdfDecks : public test::Import {
     imported("a.bdf", "--scene-out s.toml " + options);
     return Scene::load(place / "s.toml");
   }
-  std::string table;
 };
 
 constexpr double E = 2.1e11, G = E / 2.6;

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
@@ -16,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-class ImportBeam : public test::Import {
+class ImportBeam : public test::ImportAndRun {
  protected:
   /// Imports and runs a deck.
   void solve(const std::string& text, const std::string& file = "a.bdf", const std::string& options = "") {
@@ -26,38 +25,11 @@ class ImportBeam : public test::Import {
     table = ran.out;
     told = ran.err;
   }
-  /// Of columns of the histories, last row less first row.
-  std::vector<double> change(const std::string& columns) {
-    const auto ran = test::succeeded(place.run("hilo-post series run.h5 '" + columns + "' -o -"));
-    std::vector<std::vector<double>> rows;
-    std::istringstream lines(ran.out);
-    std::string line, word;
-    std::getline(lines, line);
-    while (std::getline(lines, line)) {
-      std::istringstream words(line);
-      rows.emplace_back();
-      while (std::getline(words, word, ',')) rows.back().push_back(std::strtod(word.c_str(), nullptr));
-    }
-    std::vector<double> out;
-    for (size_t i = 1; i < rows.back().size(); ++i) out.push_back(rows.back()[i] - rows.front()[i]);
-    return out;
-  }
   Vec3 moved(const std::string& body) {
     const auto v = change("body." + body + "*");
     return {v[0], v[1], v[2]};
   }
-  double frequency(int mode) {
-    std::istringstream lines(table);
-    std::string line;
-    while (std::getline(lines, line)) {
-      std::istringstream words(line);
-      int n = 0;
-      double f = 0;
-      if (words >> n >> f && n == mode) return f;
-    }
-    return 0;
-  }
-  std::string table, told;
+  std::string told;
 };
 
 const std::string stat = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\n";

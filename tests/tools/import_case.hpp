@@ -2,6 +2,7 @@
 // What tests of hilo-import share: a folder, runs, and areas and volumes of what was read.
 #pragma once
 #include <Eigen/Geometry>
+#include <sstream>
 
 #include "model/mesh.hpp"
 #include "model/store.hpp"
@@ -60,6 +61,40 @@ class Import : public ToolCase {
   static std::string deck(const std::string& name) { return std::string(HILO_SOURCE) + "/tests/tools/decks/" + name; }
 
   std::string out, err;
+};
+
+/// An import whose scene runs, to run.h5.
+class ImportAndRun : public Import {
+ protected:
+  /// Of columns of the histories, last row less first row.
+  std::vector<double> change(const std::string& columns) {
+    const auto ran = succeeded(place.run("hilo-post series run.h5 '" + columns + "' -o -"));
+    std::vector<std::vector<double>> rows;
+    std::istringstream lines(ran.out);
+    std::string line, word;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+      std::istringstream words(line);
+      rows.emplace_back();
+      while (std::getline(words, word, ',')) rows.back().push_back(std::strtod(word.c_str(), nullptr));
+    }
+    std::vector<double> out;
+    for (size_t i = 1; i < rows.back().size(); ++i) out.push_back(rows.back()[i] - rows.front()[i]);
+    return out;
+  }
+  /// Of the table that hilo-solve printed  [Hz]
+  double frequency(int mode) {
+    std::istringstream lines(table);
+    std::string line;
+    while (std::getline(lines, line)) {
+      std::istringstream words(line);
+      int n = 0;
+      double f = 0;
+      if (words >> n >> f && n == mode) return f;
+    }
+    return 0;
+  }
+  std::string table;
 };
 
 }  // namespace hilo::test
