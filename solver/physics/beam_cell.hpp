@@ -279,13 +279,12 @@ inline void run(const ArcCall& call) {
       const T rate = pair.by_beta * cell.beta + pair.kappa;
       Resultants<T> r;
       const bool ahead = foresees && pair.q0 == pair.q1;
-      respond(cell.law, m0, m1, pair.elastic, rate, recalls ? recalled : nullptr, ahead ? x_ahead : nullptr, r, s_pair,
-              K ? D_pair : nullptr);
+      respond(cell.law, m0, m1, pair.elastic, rate, recalls ? recalled : nullptr, static_cast<const T*>(nullptr), r, s_pair,
+              K && !ahead ? D_pair : nullptr);
       if (ahead) {
-        for (int m = 0; m < n_measures; ++m) s_change[m] += s_pair[m];
-        respond(cell.law, m0, m1, pair.elastic, rate, recalls ? recalled : nullptr, static_cast<const T*>(nullptr), r, s_pair,
-                static_cast<T(*)[n_measures]>(nullptr));
-        for (int m = 0; m < n_measures; ++m) s_change[m] -= s_pair[m];
+        T s_ahead[n_measures];
+        respond_ahead(cell.law, m1, pair.elastic, x_ahead, s_ahead, D_pair);
+        for (int m = 0; m < n_measures; ++m) s_change[m] += s_ahead[m] - s_pair[m];
       }
     }
     if (pair.acts)

@@ -190,9 +190,10 @@ template <class T>
   for (int i = 0; i < 3; ++i) by_p.m[i][i] += 1;
 }
 
-/// L times the strains at m and what dm changes of them to first order.
+/// L times the strains at m and what dm changes of them to first order.  Statics alone need it, and steps in time are faster without it
+/// beside them.
 template <class T>
-[[gnu::always_inline]] inline void strain_ahead(const Measures<T>& m, const Measures<T>& dm, T* x) {
+[[gnu::noinline]] void strain_ahead(const Measures<T>& m, const Measures<T>& dm, T* x) {
   const End<T> e(m);
   const TurnFunctions<T> turn = turning(e.c, e.c);
   e.strain(turn.f1, turn.k1, x);
@@ -293,6 +294,14 @@ template <class T>
     }
     D[3][j] += Bt[0] * n0 + Bt[1] * n1 + Bt[2] * n2 + df_half * (a[0] * CJ[3][j] + a[1] * CJ[4][j] + a[2] * CJ[5][j]);
   }
+}
+
+/// The same at the mean strains `ahead` (L times them), apart as strain_ahead is.
+template <class T>
+[[gnu::noinline]] void respond_ahead(const ArcStiffness<T>& law, const Measures<T>& m, double elastic, const T* ahead, T* s,
+                                     T (*D)[n_measures]) {
+  Resultants<T> r;
+  respond(law, m, m, elastic, T{}, static_cast<const T*>(nullptr), ahead, r, s, D);
 }
 
 }  // namespace hilo::arc

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "base/values_between.hpp"
 #include "model/section_file.hpp"
@@ -114,7 +115,11 @@ class Sections {
     if (kind_.meshed) meshed_ = &faces.area(first_, nu_);
   }
   /// At a share of the length.
-  BeamSection at(double share) const { return last_ ? of(ValuesBetween(first_, *last_, share)) : of(first_); }
+  BeamSection at(double share) const {
+    if (last_) return of(ValuesBetween(first_, *last_, share));
+    if (!same_) same_ = of(first_);
+    return *same_;
+  }
 
  private:
   BeamSection of(const EntryValues& section) const {
@@ -125,6 +130,7 @@ class Sections {
   const SectionKind& kind_;
   double E_ = 0, nu_ = 0, density_ = 0;
   const SectionArea* meshed_ = nullptr;
+  mutable std::optional<BeamSection> same_;  // all along
 };
 
 }  // namespace
