@@ -129,7 +129,13 @@ std::vector<KindSchema> make_schema() {
                 {"a", text, "", "", "what the first section rides on, at any distance: a region, body, set, section of a beam, or ground"},
                 {"b", text, "", "", "what the last section rides on"},
                 {"damping", number, "s", "0", "stiffness-proportional damping beta", at_least(0)},
-                {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)}}});
+                {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)},
+                {"fidelity", text, "", "nonlinear",
+                 "nonlinear, or linear: beams that hang together by `a` and `b` are mean axes and modes, as linear regions are"},
+                {"modes", number, "", "40", "vibration modes of a linear beam, at most; static ones are there besides", at_least(0)},
+                {"up_to", number, "Hz", "", "vibration modes of a linear beam up to this frequency, as of regions", above(0)},
+                {"modal_damping", number, "1", "0", "ratio to the critical damping of the modes of a linear beam, as of regions",
+                 at_least(0)}}});
   s.push_back({"body",
                "",
                "a rigid body without a mesh",

@@ -119,23 +119,40 @@ void Builder::add_beams() {
   Faces faces(scene_, comm_, beams.meshes);
   for (BeamPlan& plan : beam_plans_) {
     const Entry& e = *plan.entry;
+    plan.linear = fidelity_of(e.text("fidelity"), e.where("fidelity")) == Fidelity::linear;
     for (const char* key : {"a", "b"})
-      if (e.given(key)) (key[0] == 'a' ? plan.body.front() : plan.body.back()) = carrier(e, key, true).body;
-    const BeamSection section = section_of(scene_, e, is_static(), faces);
+      if (e.given(key)) {
+        const int known = plan.linear ? find(e.text(key), e.where(key), Asks::looks).body : -1;
+        (key[0] == 'a' ? plan.body.front() : plan.body.back()) = known >= 0 ? known : carrier(e, key, true).body;
+      }
+    plan.section = section_of(scene_, e, is_static(), faces);
+    check_carriers(plan);
+    if (plan.linear) continue;
+    const BeamSection& section = plan.section;
     beams.beams.push_back({e.name, static_cast<int>(beams.cells.size()), static_cast<int>(plan.line.cells.size())});
     for (size_t k = 0; k < plan.line.cells.size(); ++k) {
       const BeamLine::Cell& cell = plan.line.cells[k];
-      if (plan.body[k] == plan.body[k + 1]) e.refuse("cells", "both ends of a cell are on one body: it could not deform");
-      const Body& body = out_->bodies[std::max(plan.body[k], plan.body[k + 1])];
-      if (out_->bodies[plan.body[k]].linear || out_->bodies[plan.body[k + 1]].linear)
-        e.refuse(out_->bodies[plan.body[k]].linear ? "a" : "b",
-                 fmt::format("\"{}\" is a linear region: it has no single position", body.name), "a set of its nodes");
       beams.add_cell({plan.line.at[k], cell.frame_a, plan.body[k]}, {plan.line.at[k + 1], cell.frame_b, plan.body[k + 1]}, section,
                      e.number("damping"), e.number("mass_damping"));
-      const double L = beams.cells.back().arc.law.length;
-      out_->mass += section.mass * L;
-      out_->stiffness = std::max(out_->stiffness, section.C(2, 2) / L);
+      count_cell(section, beams.cells.back());
     }
+  }
+  add_linear_beams();
+}
+
+void Builder::count_cell(const BeamSection& section, const BeamCell& cell) const {
+  out_->mass += section.mass * cell.arc.law.length;
+  out_->stiffness = std::max(out_->stiffness, section.C(2, 2) / cell.arc.law.length);
+}
+
+void Builder::check_carriers(const BeamPlan& plan) const {
+  const Entry& e = *plan.entry;
+  for (size_t k = 0; k + 1 < plan.body.size(); ++k) {
+    const Body &a = out_->bodies[plan.body[k]], &b = out_->bodies[plan.body[k + 1]];
+    if (plan.body[k] == plan.body[k + 1]) e.refuse("cells", "both ends of a cell are on one body: it could not deform");
+    if (a.linear || b.linear)
+      e.refuse(a.linear ? "a" : "b", fmt::format("\"{}\" is a linear region: it has no single position", (a.linear ? a : b).name),
+               "a set of its nodes");
   }
 }
 

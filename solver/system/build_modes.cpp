@@ -21,13 +21,13 @@ void Builder::reduce_linear_regions() {
   out_->modes_of.resize(out_->bodies.size(), -1);
   if (out_->modes.empty() && !files_.from.empty()) warn(files_.from, "no region is linear: the file is not read");
   if (out_->modes.empty()) return;
-  const Mesh& mesh = mesh_->mesh;
   out_->shape_row.assign(out_->X.size(), -1);
   int n_blocks = 0;
   for (size_t number = 0; number < out_->modes.size(); ++number) {
     Modes& modes = out_->modes[number];
     const Body& axes = out_->bodies[modes.body];
-    RegionParcel parcel = parcel_of(static_cast<int>(number));
+    BeamRegion* beams = beam_region(static_cast<int>(number));
+    RegionParcel parcel = beams ? parcel_of_beams(*beams) : parcel_of(static_cast<int>(number));
     const bool stiffening = parcel.stiffening;
     const double modal_damping = parcel.modal_damping;
     const auto& welds = parcel.welds;
@@ -35,9 +35,10 @@ void Builder::reduce_linear_regions() {
     Reduction found;
     if (comm_.rank != 0) SharedCholesky(comm_).serve();
     std::vector<double>
-        head;  // modes, first frequency left out, omega2, A, levers, then of each weld: rows left out, axes, shares, means and stretches
+        head;  // modes, first frequency left out, omega2, A, levers, then of each weld: rows left out, axes, shares, means and stretches;
+               // motions of sections of beams
     if (comm_.rank == 0) {
-      const ReductionInput in = reduction_input(parcel, axes);
+      const ReductionInput in = beams ? beam_input(*beams, parcel) : reduction_input(parcel, axes);
       const auto n = static_cast<int>(in.X.size());
       found = reduction_of(in, axes, parcel.where);
       const auto m = found.omega2.size();
@@ -81,6 +82,10 @@ void Builder::reduce_linear_regions() {
           }
           head.insert(head.end(), mean.data(), mean.data() + 3), head.insert(head.end(), stretch.data(), stretch.data() + 9);
         }
+      }
+      if (beams) {
+        const std::vector<double> motions = section_motions(*beams, found.shapes);
+        head.insert(head.end(), motions.begin(), motions.end());
       }
     }
     {
@@ -132,6 +137,21 @@ void Builder::reduce_linear_regions() {
       for (int j = 0; j < m; ++j) w->mean[j] = next_vector(), w->stretch[j] = next_matrix();
     }
     out_->part<LinearRegions>().regions.push_back(std::move(made));
+    if (beams) set_sections(*beams, std::span(head).subspan(at));
+    if (!beams) spread_shapes(modes, found, local);
+    if (!reductions_.empty() && reductions_.back().found.A.size() == 0) reductions_.back().found = std::move(found);
+  }
+  comm_.on_first([&] {
+    if (!reductions_.empty()) keep_reductions();
+  });
+  out_->start.eta.assign(n_blocks, Vec3::Zero());
+  out_->start.Y.assign(3 * static_cast<size_t>(n_blocks), Mat3::Zero());
+}
+
+/// Cells of a region to those that stress is recovered from, and its modes at the local nodes that follow it.  Collective.
+void Builder::spread_shapes(const Modes& modes, const Reduction& found, const std::map<std::int64_t, int>& local) {
+    const Mesh& mesh = mesh_->mesh;
+    const int m = modes.n_modes;
     std::map<std::pair<int, Shape>, SolidBatch> own;
     std::vector<std::int64_t> cell_nodes;
     for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
@@ -171,13 +191,6 @@ void Builder::reduce_linear_regions() {
                                        : Vec3::Zero());
       }
     }
-    if (!reductions_.empty() && reductions_.back().found.A.size() == 0) reductions_.back().found = std::move(found);
-  }
-  comm_.on_first([&] {
-    if (!reductions_.empty()) keep_reductions();
-  });
-  out_->start.eta.assign(n_blocks, Vec3::Zero());
-  out_->start.Y.assign(3 * static_cast<size_t>(n_blocks), Mat3::Zero());
 }
 
 }  // namespace hilo

@@ -53,6 +53,7 @@ using Vector = Eigen::VectorXd;
 constexpr Index n_bending = 6;        // soft modes, lowest first, that derivatives are made of,
 constexpr Index n_held = 4;           // and the vibrations between interfaces that they come from
 constexpr Index most_stiffened = 60;  // modes of a region whose products are kept
+constexpr double widest = 1e8;        // between squared frequencies of vibrations: stiffer ones would cost the softest its digits
 
 Matrix rigid_motions(const std::vector<Vec3>& X, const Vec3& about) {
   Matrix out = Matrix::Zero(3 * static_cast<Index>(X.size()), 6);
@@ -192,7 +193,9 @@ Matrix vibrations(const ReductionInput& in, const RegionCells& cells, const Flex
     const Vector& lambda = found.omega2;
     Index keep = 0;
     const double limit = std::pow(2 * std::numbers::pi * in.up_to, 2);
-    while (keep < std::min<Index>(wanted, lambda.size()) && (in.up_to == 0 || keep < 4 || lambda[keep] <= limit)) ++keep;
+    while (keep < std::min<Index>(wanted, lambda.size()) && (in.up_to == 0 || keep < 4 || lambda[keep] <= limit) &&
+           lambda[keep] <= widest * lambda[0])
+      ++keep;
     if (keep == wanted && wanted < std::min(in.n_vibrations, most)) {
       wanted = std::min(2 * wanted, std::min(in.n_vibrations, most));
       continue;
@@ -336,7 +339,7 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   const auto tell = [&](const std::string& what) {
     if (in.progress) in.progress(what);
   };
-  const RegionCells cells(in.X, in.cells);
+  const RegionCells cells(in.X, in.cells, in.points);
   Matrix rigid = rigid_motions(in.X, in.centre);
   {  // orthonormal in mass
     const Matrix G = rigid.transpose() * cells.times_mass(rigid);
@@ -380,11 +383,12 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   out.soft = std::move(second.soft), out.second_order = std::move(second.forces);
   factor.end();
   out.A = moments(in, out.shapes, cells.scalar_mass());
-  const auto any = [&](double SolidBatch::*factor) {
-    return std::any_of(in.cells.begin(), in.cells.end(), [&](const SolidBatch& b) { return b.*factor > 0; });
+  const auto any = [&](double SolidBatch::*of_batch, double PointCell::*of_cell) {
+    return std::ranges::any_of(in.cells, [&](const SolidBatch& b) { return b.*of_batch > 0; }) ||
+           std::ranges::any_of(in.points, [&](const PointCell& c) { return c.*of_cell > 0; });
   };
-  if (any(&SolidBatch::alpha)) out.A_damped = moments(in, out.shapes, cells.scalar(RegionCells::damping_by_mass));
-  if (any(&SolidBatch::beta)) {
+  if (any(&SolidBatch::alpha, &PointCell::alpha)) out.A_damped = moments(in, out.shapes, cells.scalar(RegionCells::damping_by_mass));
+  if (any(&SolidBatch::beta, &PointCell::beta)) {
     const Matrix C = transposed_times(out.shapes, cells.times(RegionCells::damping_by_stiffness, out.shapes));
     out.viscous = (C + C.transpose()) / 2;
   }
