@@ -287,8 +287,7 @@ void Beams::add_work(const Moment& m, Work& sum) const {
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
-    if (!line.empty())
-      sum.external += work(line[k].at(points_of(cell, *s.left)), points_of(cell, s.from()), points_of(cell, *s.end));
+    if (!line.empty()) sum.external += work(line[k].at(points_of(cell, *s.left)), points_of(cell, s.from()), points_of(cell, *s.end));
     sum.add(s, [&](const Config& from, const Config& to, double last, double before) {
       return arc_taken(cell.arc.law, strain_of(cell, from), strain_of(cell, to), recalled(cell, *s.dissipation, from, last, before));
     });

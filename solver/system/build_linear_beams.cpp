@@ -121,7 +121,8 @@ void Builder::add_mean_axes(BeamRegion& region) {
   for (size_t k = 1; k < region.plans.size() && region.plans.size() <= named; ++k) name += "+" + beam_plans_[region.plans[k]].entry->name;
   if (region.plans.size() > named) name += fmt::format("+{} more", region.plans.size() - 1);
   if (body_by_name_.contains(name) || (mesh_ && mesh_->mesh.find_region(name) >= 0))
-    throw Error(e.place.text(), fmt::format("{}: a body or region is called \"{}\", as the mean axes of this linear beam", e.label(), name));
+    throw Error(e.place.text(),
+                fmt::format("{}: a body or region is called \"{}\", as the mean axes of this linear beam", e.label(), name));
   const int b = new_body(name, origin + com);
   Body& axes = out_->bodies[b];
   axes.mass = mass, axes.J = second - mass * com * com.transpose(), axes.linear = true;

@@ -34,9 +34,8 @@ void Builder::reduce_linear_regions() {
     const auto& local = parcel.local;
     Reduction found;
     if (comm_.rank != 0) SharedCholesky(comm_).serve();
-    std::vector<double>
-        head;  // modes, first frequency left out, omega2, A, levers, then of each weld: rows left out, axes, shares, means and stretches;
-               // motions of sections of beams
+    std::vector<double> head;  // modes, first frequency left out, omega2, A, levers, then of each weld: rows left out, axes, shares, means
+                               // and stretches; motions of sections of beams
     if (comm_.rank == 0) {
       const ReductionInput in = beams ? beam_input(*beams, parcel) : reduction_input(parcel, axes);
       const auto n = static_cast<int>(in.X.size());
@@ -150,47 +149,47 @@ void Builder::reduce_linear_regions() {
 
 /// Cells of a region to those that stress is recovered from, and its modes at the local nodes that follow it.  Collective.
 void Builder::spread_shapes(const Modes& modes, const Reduction& found, const std::map<std::int64_t, int>& local) {
-    const Mesh& mesh = mesh_->mesh;
-    const int m = modes.n_modes;
-    std::map<std::pair<int, Shape>, SolidBatch> own;
-    std::vector<std::int64_t> cell_nodes;
-    for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
-      if (!is_of(e, modes.body)) continue;
-      const int region = mesh.region[e];
-      const Shape shape = taken_as(e, cell_nodes);
-      auto it = own.find({region, shape});
-      if (it == own.end()) it = own.emplace(std::pair(region, shape), batch_of(region, shape)).first;
-      it->second.cells.push_back(static_cast<int>(e));
-      for (const std::int64_t node : cell_nodes) it->second.nodes.push_back(static_cast<int>(node));
-    }
-    for (auto& [kind, batch] : own)
-      out_->part<LinearRegions>().cells.push_back(std::move(batch)), out_->part<LinearRegions>().body_of_cells.push_back(modes.body);
+  const Mesh& mesh = mesh_->mesh;
+  const int m = modes.n_modes;
+  std::map<std::pair<int, Shape>, SolidBatch> own;
+  std::vector<std::int64_t> cell_nodes;
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
+    if (!is_of(e, modes.body)) continue;
+    const int region = mesh.region[e];
+    const Shape shape = taken_as(e, cell_nodes);
+    auto it = own.find({region, shape});
+    if (it == own.end()) it = own.emplace(std::pair(region, shape), batch_of(region, shape)).first;
+    it->second.cells.push_back(static_cast<int>(e));
+    for (const std::int64_t node : cell_nodes) it->second.nodes.push_back(static_cast<int>(node));
+  }
+  for (auto& [kind, batch] : own)
+    out_->part<LinearRegions>().cells.push_back(std::move(batch)), out_->part<LinearRegions>().body_of_cells.push_back(modes.body);
 
-    // shapes at the local nodes that follow, so many nodes at a time
-    std::vector<int> mine;
-    for (size_t i = 0; i < out_->X.size(); ++i)
-      if (out_->follower[i] == modes.body) mine.push_back(static_cast<int>(i));
-    const size_t at_once = 100000, most = static_cast<size_t>(comm_.max(static_cast<double>(mine.size())));
-    out_->shapes.reserve(out_->shapes.size() + mine.size() * 3 * static_cast<size_t>(modes.n_blocks));
-    for (size_t from = 0; from < most; from += at_once) {
-      const std::span some =
-          std::span(mine).subspan(std::min(from, mine.size()), std::min(at_once, mine.size() - std::min(from, mine.size())));
-      std::vector<std::vector<std::int64_t>> ask(comm_.size);
-      for (const int i : some) ask[0].push_back(mesh_->node_global[i]);
-      const auto asked = comm_.exchange(ask);
-      std::vector<std::vector<double>> answer(comm_.size);
-      for (int k = 0; k < comm_.size && comm_.rank == 0; ++k)
-        for (const std::int64_t row : asked[k])
-          for (int j = 0; j < m; ++j)
-            for (int c = 0; c < 3; ++c) answer[k].push_back(found.shapes(3 * local.at(row) + c, j));
-      const auto shapes = comm_.exchange(answer)[0];
-      for (size_t k = 0; k < some.size(); ++k) {
-        out_->shape_row[some[k]] = static_cast<std::int64_t>(out_->shapes.size());
-        for (int j = 0; j < 3 * modes.n_blocks; ++j)
-          out_->shapes.push_back(j < m ? Vec3(shapes[3 * (k * m + j)], shapes[3 * (k * m + j) + 1], shapes[3 * (k * m + j) + 2])
-                                       : Vec3::Zero());
-      }
+  // shapes at the local nodes that follow, so many nodes at a time
+  std::vector<int> mine;
+  for (size_t i = 0; i < out_->X.size(); ++i)
+    if (out_->follower[i] == modes.body) mine.push_back(static_cast<int>(i));
+  const size_t at_once = 100000, most = static_cast<size_t>(comm_.max(static_cast<double>(mine.size())));
+  out_->shapes.reserve(out_->shapes.size() + mine.size() * 3 * static_cast<size_t>(modes.n_blocks));
+  for (size_t from = 0; from < most; from += at_once) {
+    const std::span some =
+        std::span(mine).subspan(std::min(from, mine.size()), std::min(at_once, mine.size() - std::min(from, mine.size())));
+    std::vector<std::vector<std::int64_t>> ask(comm_.size);
+    for (const int i : some) ask[0].push_back(mesh_->node_global[i]);
+    const auto asked = comm_.exchange(ask);
+    std::vector<std::vector<double>> answer(comm_.size);
+    for (int k = 0; k < comm_.size && comm_.rank == 0; ++k)
+      for (const std::int64_t row : asked[k])
+        for (int j = 0; j < m; ++j)
+          for (int c = 0; c < 3; ++c) answer[k].push_back(found.shapes(3 * local.at(row) + c, j));
+    const auto shapes = comm_.exchange(answer)[0];
+    for (size_t k = 0; k < some.size(); ++k) {
+      out_->shape_row[some[k]] = static_cast<std::int64_t>(out_->shapes.size());
+      for (int j = 0; j < 3 * modes.n_blocks; ++j)
+        out_->shapes.push_back(j < m ? Vec3(shapes[3 * (k * m + j)], shapes[3 * (k * m + j) + 1], shapes[3 * (k * m + j) + 2])
+                                     : Vec3::Zero());
     }
+  }
 }
 
 }  // namespace hilo

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "model/beam_line.hpp"
-#include "physics/beam_section.hpp"
 #include "physics/axes.hpp"
+#include "physics/beam_section.hpp"
 #include "physics/spring_kinds.hpp"
 #include "system/factor_room.hpp"
 #include "system/mortar.hpp"
@@ -228,9 +228,9 @@ class Builder {
       std::vector<int> sections;  // of LinearBeams, which ride on it
     };
     std::vector<Place> places;
-    std::vector<int> sections;    // of LinearBeams
+    std::vector<int> sections;  // of LinearBeams
     int first_cell = 0, n_cells = 0;
-    double arm = 0;               // of the nodes from the origins of their sections [m]
+    double arm = 0;  // of the nodes from the origins of their sections [m]
   };
 
   const Scene& scene_;
@@ -249,7 +249,7 @@ class Builder {
   std::map<std::string, int> patch_by_name_;
   std::vector<BeamPlan> beam_plans_;
   std::vector<BeamRegion> beam_regions_;
-  mutable std::set<int> acted_on_;  // bodies that an entry joins, loads or moves, and does not only look at
+  mutable std::set<int> acted_on_;                         // bodies that an entry joins, loads or moves, and does not only look at
   std::vector<std::vector<MortarRow>> mortar_;             // by tie
   std::vector<std::pair<std::string, std::string>> tied_;  // place and label, by tie
   std::vector<std::string> held_by_;                       // per node: the entry that made it a follower of a patch or motion

@@ -302,8 +302,7 @@ void LinearBeams::observe(const Sight& sight) {
     }
     for (int e = 0; e < 2; ++e)
       for (int part = 0; part < 2; ++part)
-        for (int i = 0; i < 3; ++i)
-          sight.mid.push_back((e == 0 ? -1 : 1) * vec3(cell.arc.axis[e][i]).dot(f.segment<3>(6 * e + 3 * part)));
+        for (int i = 0; i < 3; ++i) sight.mid.push_back((e == 0 ? -1 : 1) * vec3(cell.arc.axis[e][i]).dot(f.segment<3>(6 * e + 3 * part)));
   }
 }
 

@@ -12,7 +12,8 @@ struct PointCell {
   Eigen::Matrix<double, 24, 24> stiffness;  // [N/m]
   Eigen::Matrix<double, 8, 8> mass;         // alike in every direction [kg]
   double beta = 0, alpha = 0;               // damping by them [s, 1/s]
-  /// In the middle: of displacements of the nodes, int of stress over the volume (11, 22, 33, 23, 31, 12) [N], and du_i/dX_j at 3 i + j [1].
+  /// In the middle: of displacements of the nodes, int of stress over the volume (11, 22, 33, 23, 31, 12) [N], and du_i/dX_j at 3 i + j
+  /// [1].
   Eigen::Matrix<double, 6, 24> stress;
   Eigen::Matrix<double, 9, 24> gradient;
   double length = 0;  // [m]

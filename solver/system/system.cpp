@@ -101,7 +101,8 @@ void System::reduce(Pass& p) const {
   const auto none = std::vector<CarriedBody>{};
   for (const CarriedBody& b : modes.empty() ? none : part<LinearBeams>().carried)
     if (!p.body[b.body].isZero(0))
-      throw Error("", fmt::format("something acts on section \"{}\" of a linear beam that no entry of the scene names", bodies[b.body].name));
+      throw Error("",
+                  fmt::format("something acts on section \"{}\" of a linear beam that no entry of the scene names", bodies[b.body].name));
   for (size_t b = 0; b < bodies.size(); ++b) {
     if (body_block[b] < 0) continue;
     for (int k = 0; k < 6; ++k) p.out.r[3 * body_block[b] + k] += p.body[b][k];

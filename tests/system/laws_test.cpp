@@ -212,7 +212,8 @@ void add_beams(std::vector<Variant>& out) {
   std::string text = base;
   for (const auto& [word, by] : {std::pair{"REGION", ""}, {"JOINT", "spherical"}, {"AXIS", ""}})
     text.replace(text.find(word), std::strlen(word), by);
-  for (const char* more : {"", "damping = 0.02\n", "mass_damping = 0.7\n", "orientation = [1, 0.2, 0.3]\n", "fidelity = \"linear\"\ndamping = 0.02\nmass_damping = 0.7\n"})
+  for (const char* more : {"", "damping = 0.02\n", "mass_damping = 0.7\n", "orientation = [1, 0.2, 0.3]\n",
+                           "fidelity = \"linear\"\ndamping = 0.02\nmass_damping = 0.7\n"})
     out.push_back({"beam", std::string("beam ") + more + " on bodies", text + any_section + arc + "a = \"one\"\nb = \"two\"\n" + more});
   out.push_back({"beam", "linear beam under a load that turns with it",
                  text + any_section + arc +
