@@ -9,8 +9,8 @@
 
 #include "model/beam_line.hpp"
 #include "physics/axes.hpp"
-#include "physics/beam_section.hpp"
 #include "physics/spring_kinds.hpp"
+#include "system/beam_cells.hpp"
 #include "system/factor_room.hpp"
 #include "system/mortar.hpp"
 #include "system/pair_facet.hpp"
@@ -21,8 +21,6 @@
 
 namespace hilo {
 
-struct BeamCell;
-struct LineLoad;
 struct RegionParcel;
 struct Obstacle;
 struct ContactPair;
