@@ -86,10 +86,10 @@ Eigen::Matrix<double, 3, Eigen::Dynamic> map_of(bool is_point, const Vec3& lever
 
 }  // namespace
 
-void LinearBeams::add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha) {
+void LinearBeams::add_cell(const SectionPlace& a, const SectionPlace& b, const SectionsAlong& sections, double beta, double alpha) {
   Config rest;
   rest.c = {a.at, b.at}, rest.R.assign(2, Mat3::Identity());
-  BeamCell cell = beam_cell({a.at, a.frame, 0}, {b.at, b.frame, 1}, rest, section, beta, alpha);
+  BeamCell cell = beam_cell({a.at, a.frame, 0}, {b.at, b.frame, 1}, rest, sections, beta, alpha);
   cell.body = {a.body, b.body};
   stiffness_.push_back(stiffness_of(cell, drawn(cell, a.at, b.at)));
   cells.push_back(std::move(cell));

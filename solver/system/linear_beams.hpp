@@ -38,7 +38,7 @@ class LinearBeams final : public Contribution, public Equations, public Observer
   std::vector<CarriedBody> carried;
   /// Carried bodies from their regions: the map is linear, for positions, velocities and accelerations alike.
   void carry(Config& q) const;
-  void add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha);
+  void add_cell(const SectionPlace& a, const SectionPlace& b, const SectionsAlong& sections, double beta, double alpha);
   /// Of cell k, on the nodes of its sections, which stand at `arm` from their origins.
   PointCell point_cell(size_t k, double arm) const;
   /// What points of a cell's sections are of the nodes (8 x 8).
