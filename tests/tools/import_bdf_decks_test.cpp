@@ -267,6 +267,8 @@ TEST_F(ImportBdfDecks, ARangeOfElementsUnderAPressureMayHaveGaps) {
     EXPECT_EQ(facets.size(), 2u) << load;
     EXPECT_TRUE(s.entries("left_out").empty()) << load;
   }
+  scene(plate + "GRID,7,,3.,0.,0.\nCTRIA3,3001,7,5,7,6\nFORCE,2,1,,1.,1.,0.,0.\n", "--thicken");
+  expect_said("a.bdf:17: forces at grids of shells act as point forces on the divided mesh");
   scene(plate + "PLOAD2,2,5.,5001,THRU,5004\n", "--thicken");
   expect_said("not read: PLOAD on elements that are not there (1, a.bdf:");
 }

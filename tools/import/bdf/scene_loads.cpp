@@ -245,6 +245,8 @@ void BdfScene::nodal_loads() {
   for (const auto& [a, p] : on_mean) distribute(*mean_.at(a), p.F, p.M, p.place);
 
   std::map<Vec3, std::pair<Rows, std::string>, Vec3Order> equal;
+  std::string on_divided;  // place of the first force at a grid of shells that become several
+  const bool divided = options_.thicken && is_divided(in_);
   for (const auto& [a, f] : force_) {
     const auto& [v, place] = f;
     if (v.norm() == 0) continue;
@@ -257,6 +259,7 @@ void BdfScene::nodal_loads() {
       if (is_of_shell(a)) {  // each node of its pairs takes its share
         in_.nodes_counted[a] = count_nodes(sheets(a), of_solids_.contains(a));
         each /= static_cast<double>(in_.nodes_counted[a]);
+        if (divided && on_divided.empty()) on_divided = place;
       }
       auto& [rows, first] = equal[each];
       if (rows.empty()) first = place;
@@ -264,6 +267,11 @@ void BdfScene::nodal_loads() {
     } else
       in_.skip("RBE3 of a grid that is no node of a cell", place);
   }
+  if (!on_divided.empty())
+    in_.notes.push_back(
+        fmt::format("{}: forces at grids of shells act as point forces on the divided mesh, which gives way more beside them "
+                    "(a pressure or a finer mesh of quadrangles alone does not)",
+                    on_divided));
   for (const auto& [v, group] : equal) {
     const std::string set = set_of(group.first, "force", true);
     tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", group.second,
