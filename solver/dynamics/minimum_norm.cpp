@@ -67,7 +67,8 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
       auto part = scaled.middleCols<3>(3 * static_cast<Eigen::Index>(k));
       part = (part * scale[cliques_[j][k]]).eval();
     }
-    DenseRows K = DenseRows::Zero(scaled.cols(), scaled.cols());
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, max_directions, max_directions> K =
+        decltype(K)::Zero(scaled.cols(), scaled.cols());
     for (Eigen::Index r = 0; r < scaled.rows(); ++r)
       for (Eigen::Index i = 0; i < scaled.cols(); ++i)
         if (scaled(r, i) != 0) K.row(i) += scaled(r, i) * scaled.row(r);
@@ -94,10 +95,11 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   const auto shares = [&](const Eigen::VectorXd& of) {  // G y
     const Eigen::VectorXd y = scaled(of);
     std::vector<double> out(lambda.size(), 0.0);
+    Eigen::Matrix<double, max_directions, 1> own;
     for (int j = 0; j < n; ++j) {
-      Eigen::Map<Eigen::VectorXd> own(&out[all[j]->row()], G[j].rows());
-      for (size_t k = 0; k < cliques_[j].size(); ++k)
-        own += G[j].middleCols<3>(3 * static_cast<Eigen::Index>(k)) * y.segment<3>(3 * cliques_[j][k]);
+      const auto blocks = cliques_[j];
+      for (size_t k = 0; k < blocks.size(); ++k) own.segment<3>(3 * static_cast<Eigen::Index>(k)) = y.segment<3>(3 * blocks[k]);
+      Eigen::Map<Eigen::VectorXd>(&out[all[j]->row()], G[j].rows()) = G[j] * own.head(G[j].cols());
     }
     return out;
   };

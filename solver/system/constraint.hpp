@@ -7,7 +7,7 @@
 
 namespace hilo {
 
-using DenseRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using DenseRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, max_rows, max_directions>;
 
 /// The rows of one thing: first those of positions, then those of velocities.
 class Constraint {

@@ -45,7 +45,7 @@ DenseRows JointConstraint::gradient(const Stage& stage) const {
   RowLaw::Gradient law;
   hilo::gradient(c, *stage.left, g);
   if (c.rows) row_gradient(c, stage, g, law);
-  Eigen::Matrix<double, Eigen::Dynamic, max_directions, Eigen::RowMajor, max_rows, max_directions> out(c.n_rows(), max_directions);
+  DenseRows out(c.n_rows(), max_directions);
   const bool slips = c.n_rows() > c.n_position_rows();
   if (slips) out.bottomRows(c.n_rows() - c.n_position_rows()).setZero();
   for (int row = 0; row < c.n_position_rows(); ++row) {
@@ -67,7 +67,8 @@ DenseRows JointConstraint::gradient(const Stage& stage) const {
     out.middleCols<3>(used) = out.middleCols<3>(6 * k).eval(), used += 3;
     if (end.body >= 0) out.middleCols<3>(used) = (out.middleCols<3>(6 * k + 3) / points_.length).eval(), used += 3;
   }
-  return out.leftCols(used);
+  out.conservativeResize(Eigen::NoChange, used);
+  return out;
 }
 
 }  // namespace
