@@ -35,7 +35,7 @@ Mat12 stiffness_of(const BeamCell& cell, const arc::SectionPoints<double>& at) {
   arc::Resultants<double> r;
   double s[arc::n_measures], D[arc::n_measures][arc::n_measures];
   const arc::Measures<double> m = arc::measures_of(at.y);
-  arc::respond(cell.arc.law, m, m, 1, 0., static_cast<const double*>(nullptr), r, s, D);
+  arc::respond(cell.arc.law, m, m, 1, 0., static_cast<const double*>(nullptr), static_cast<const double*>(nullptr), r, s, D);
   arc::Gradient<double> g;
   arc::gradient(at, at, g);
   double K[144] = {};
