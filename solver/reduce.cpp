@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "about.hpp"
 #include "base/args.hpp"
@@ -46,14 +48,19 @@ void reduce(int argc, char** argv, const Comm& comm) {
   if (comm.rank != 0) quiet_warnings(true);
   const Scene scene = Scene::load(scene_path, overrides, comm);
   if (mesh_path.empty()) mesh_path = scene.mesh_path();
-  if (mesh_path.empty()) throw Error("", "a mesh is required", "hilo-reduce scene.toml tags.h5", Exit::usage);
-  LocalMesh mesh = read_local_mesh(mesh_path, comm);
+  const bool has_beams = std::ranges::any_of(scene.entries("beam"), [](const Entry& e) { return e.text("fidelity") == "linear"; });
+  if (mesh_path.empty() && !has_beams) throw Error("", "a mesh is required", "hilo-reduce scene.toml tags.h5", Exit::usage);
+  if (mesh_path.empty() && !shapes.empty())
+    throw Error("", "--shapes shows regions of a mesh, and there is none", "hilo-solve --set 'time.analysis=\"modes\"'", Exit::usage);
+  std::optional<LocalMesh> mesh;
+  if (!mesh_path.empty()) mesh.emplace(read_local_mesh(mesh_path, comm));
   check_output(output);
   if (!shapes.empty()) check_output(shapes);
-  ReducedFiles files{.from = std::filesystem::exists(output) ? output : "", .to = output, .provenance = mesh.provenance};
+  ReducedFiles files{.from = std::filesystem::exists(output) ? output : "", .to = output, .provenance = {}};
+  if (mesh) files.provenance = mesh->provenance;
   files.provenance.push_back(command_line(argc, argv));
   const FactorRoom room{.memory = memory < 0 ? -1 : 1e9 * memory, .scratch = scratch};
-  const auto system = build_system(scene, &mesh, comm, files, room);
+  const auto system = build_system(scene, mesh ? &*mesh : nullptr, comm, files, room);
   if (system->modes.empty()) throw Error(mesh_path, "no region is linear", "hilo-tag mesh.h5 --linear NAME -o tags.h5");
   if (shapes.empty()) return;
   const auto lines = write_region_shapes(*system, scene, shapes, files.provenance);

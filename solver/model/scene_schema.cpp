@@ -114,23 +114,29 @@ std::vector<KindSchema> make_schema() {
     s.push_back(std::move(rows));
   }
   section_kinds().close();
-  s.push_back({"beam",
-               "",
-               "a beam of linear elastic material: its sections are bodies called NAME.0, NAME.1 ... NAME.end, but for those that `a` and "
-               "`b` name",
-               {{"points", numbers, "m", "!", "of its axis, [[x, y, z], ...]: legs meet at them; equal first and last ones close it"},
-                {"path", text, "", "line", "between the points: line, or arc: circles through three, each beginning where one ends"},
-                {"cells", numbers, "1", "[8]", "of each leg; a list of one number is for all of them", at_least(1)},
-                {"section", text, "", "!", "a name of [section.NAME]"},
-                {"section_end", text, "", "", "where the beam ends, of the same kind: its sizes vary evenly between both"},
-                {"material", text, "", "", "a name of [material.NAME], of kind stvk; none where the section is a matrix"},
-                {"orientation", vector3, "1", "",
-                 "direction of axis 2 of the section, made normal to the beam at the start of each leg; absent: z, or y where it runs "
-                 "along z"},
-                {"a", text, "", "", "what the first section rides on, at any distance: a region, body, set, section of a beam, or ground"},
-                {"b", text, "", "", "what the last section rides on"},
-                {"damping", number, "s", "0", "stiffness-proportional damping beta", at_least(0)},
-                {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)}}});
+  s.push_back(
+      {"beam",
+       "",
+       "a beam of linear elastic material: its sections are bodies called NAME.0, NAME.1 ... NAME.end, but for those that `a` and "
+       "`b` name",
+       {{"points", numbers, "m", "!", "of its axis, [[x, y, z], ...]: legs meet at them; equal first and last ones close it"},
+        {"path", text, "", "line", "between the points: line, or arc: circles through three, each beginning where one ends"},
+        {"cells", numbers, "1", "[8]", "of each leg; a list of one number is for all of them", at_least(1)},
+        {"section", text, "", "!", "a name of [section.NAME]"},
+        {"section_end", text, "", "", "where the beam ends, of the same kind: its sizes vary evenly between both"},
+        {"material", text, "", "", "a name of [material.NAME], of kind stvk; none where the section is a matrix"},
+        {"orientation", vector3, "1", "",
+         "direction of axis 2 of the section, made normal to the beam at the start of each leg; absent: z, or y where it runs "
+         "along z"},
+        {"a", text, "", "", "what the first section rides on, at any distance: a region, body, set, section of a beam, or ground"},
+        {"b", text, "", "", "what the last section rides on"},
+        {"damping", number, "s", "0", "stiffness-proportional damping beta", at_least(0)},
+        {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)},
+        {"fidelity", text, "", "nonlinear",
+         "nonlinear, or linear: beams that hang together by `a` and `b` are mean axes and modes, as linear regions are"},
+        {"modes", number, "", "40", "vibration modes of a linear beam, at most; static ones are there besides", at_least(0)},
+        {"up_to", number, "Hz", "", "vibration modes of a linear beam up to this frequency, as of regions", above(0)},
+        {"modal_damping", number, "1", "0", "ratio to the critical damping of the modes of a linear beam, as of regions", at_least(0)}}});
   s.push_back({"body",
                "",
                "a rigid body without a mesh",

@@ -89,6 +89,12 @@ void warn_of_ends(const Entries& entries, const Entry& time, Warnings& w) {
   }
 }
 
+void check_beam(const Entry& e, Warnings& w) {
+  if (e.text("fidelity") == "linear") return;
+  for (const char* key : {"modes", "up_to", "modal_damping"})
+    if (e.given(key)) w.add(e, key, "says nothing but to fidelity = \"linear\"");
+}
+
 void warn_of_time(const Entries& entries, const Entry& time, Warnings& w) {
   if (time.has("reach") && time.text("analysis") != "path") w.add(time, "reach", "says nothing but to analysis = \"path\"");
   if (!time.has("step")) return;
@@ -142,6 +148,7 @@ std::vector<std::string> find_implausible(const Entries& entries) {
     for (const auto& e : list) {
       if (section == "material") check_material(e, w);
       if (section == "body") check_body(e, w);
+      if (section == "beam") check_beam(e, w);
       check_places(e, w);
       if (section == "region" && e.number("mass_damping") > 0) w.add(e, "mass_damping", "brakes rigid motion too; `damping` does not");
     }

@@ -13,7 +13,7 @@ namespace hilo {
 namespace {
 
 using arc::dot, arc::cross, arc::add_to;
-using Vector = arc::LaneVector<double>;
+using Vector = BeamVector;
 
 Vec3 vec3(const Vector& v) { return Vec3(v[0], v[1], v[2]); }
 
@@ -36,19 +36,6 @@ arc::SectionPoints<double> points_of(const BeamCell& cell, const Config& q) {
 arc::Measures<double> measures_of(const BeamCell& cell, const Config& q) { return arc::measures_of(points_of(cell, q).y); }
 ArcStrain strain_of(const BeamCell& cell, const Config& q) { return arc_strain(measures_of(cell, q)); }
 
-/// M times rates of the points.
-std::array<Vector, 8> momenta_of(const BeamCell& cell, const arc::SectionPoints<double>& rates) {
-  std::array<Vector, 8> out{};
-  arc::add_inertia(cell.arc, rates.y, out.data());
-  return out;
-}
-template <class Forces>
-double work(const Forces& F, const arc::SectionPoints<double>& from, const arc::SectionPoints<double>& to) {
-  double sum = 0;
-  for (int i = 0; i < 8; ++i) sum += dot(F[i], to.y[i] - from.y[i]);
-  return sum;
-}
-
 /// A cell as joints and springs are, with its measures.
 const Connector& connector_of(const BeamCell& cell) {
   thread_local Connector c = [] {
@@ -65,48 +52,6 @@ const Connector& connector_of(const BeamCell& cell) {
     for (int i = 0; i < 3; ++i) c.entities[2 + 2 * i + e].r = vec3(cell.arc.axis[e][i]);
   }
   return c;
-}
-
-/// Shares of c, d1, d2, d3 of both ends in points of the axis of an element by itself: use(k, t, shares, ds) at its places along_arc.
-template <class Use>
-void each_share(const BeamSection& mean, double L, const Use& use) {
-  const double phi = 12 / (L * L) * std::max(mean.C(3, 3) / mean.C(1, 1), mean.C(4, 4) / mean.C(0, 0));
-  for (size_t k = 0; k < along_arc.size(); ++k) {
-    const double t = along_arc[k].t, g = (2 * t * t * t - 3 * t * t + t) / (1 + phi), bow = (t - t * t) / 2;
-    Eigen::Matrix<double, 8, 1> u = Eigen::Matrix<double, 8, 1>::Zero();
-    u[0] = 1 - t + g, u[4] = t - g, u[3] = L * (g / 2 + bow), u[7] = L * (g / 2 - bow);
-    use(k, t, u, along_arc[k].weight * L);
-  }
-}
-
-/// Linked mass of an element by itself, on c, d1, d2, d3 of both ends.
-void set_linked_mass(const SectionsAlong& sections, const BeamSection& mean, double L, arc::ArcCell<double>& cell) {
-  for (auto& row : cell.linked)
-    for (double& m : row) m = 0;
-  each_share(mean, L, [&](size_t k, double, const Eigen::Matrix<double, 8, 1>& u, double ds) {
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) cell.linked[i][j] += ds * sections[k].mass * u[arc::linked_points[i]] * u[arc::linked_points[j]];
-  });
-  cell.across[0] = mean.J11 * L / 12, cell.across[1] = mean.J22 * L / 12, cell.across[2] = mean.J12 * L / 12;
-}
-
-/// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds of the shares u of an element by itself.
-BeamCell::Shares shares_across(const BeamSection& mean, double L) {
-  BeamCell::Shares out;
-  for (auto& column : out) column.setZero();
-  each_share(mean, L, [&](size_t, double t, const Eigen::Matrix<double, 8, 1>& u, double ds) {
-    out[0] += ds * (1 - t) * (1 - t) * u, out[1] += ds * t * (1 - t) * u, out[2] += ds * t * t * u;
-  });
-  return out;
-}
-
-/// The same of u = 1 - t and t at the origins.
-BeamCell::Shares shares_along(double L) {
-  BeamCell::Shares out;
-  for (auto& column : out) column.setZero();
-  out[0][0] = out[2][4] = L / 4;
-  out[0][4] = out[1][0] = out[1][4] = out[2][0] = L / 12;
-  return out;
 }
 
 /// Changes of strain over the steps before that dissipation recalls.
@@ -183,36 +128,8 @@ std::vector<StagePair> pairs_of(const Stage& s, bool has_beta) {
 
 }  // namespace
 
-BeamSection mean_section(const SectionsAlong& sections) {
-  BeamSection out;
-  for (size_t k = 0; k < sections.size(); ++k) {
-    const double w = along_arc[k].weight;
-    const BeamSection& s = sections[k];
-    out.C += w * s.C, out.mass += w * s.mass, out.J11 += w * s.J11, out.J22 += w * s.J22, out.J12 += w * s.J12, out.size += w * s.size;
-  }
-  return out;
-}
-
 void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const SectionsAlong& sections, double beta, double alpha) {
-  const Config& q = points_.start;
-  BeamCell cell;
-  cell.body = {a.body, b.body};
-  for (int e = 0; e < 2; ++e) {
-    const SectionPlace& place = e == 0 ? a : b;
-    const Mat3 to_body = q.R[place.body].transpose(), axes = to_body * place.frame;
-    const Vec3 arm = to_body * (place.at - q.c[place.body]);
-    std::copy_n(arm.data(), 3, cell.arc.arm[e].v);
-    for (int i = 0; i < 3; ++i) std::copy_n(axes.data() + 3 * i, 3, cell.arc.axis[e][i].v);
-  }
-  const BeamSection mean = mean_section(sections);
-  std::array<Mat6, 4> C;
-  for (size_t k = 0; k < C.size(); ++k) C[k] = sections[k].C;
-  cell.arc.law = arc_stiffness(measures_of(cell, q), C);
-  cell.arc.alpha = alpha, cell.arc.beta = beta, cell.size = mean.size;
-  set_linked_mass(sections, mean, cell.arc.law.length, cell.arc);
-  cell.across = shares_across(mean, cell.arc.law.length), cell.along = shares_along(cell.arc.law.length);
-  cell.axis = (b.at - a.at).normalized();
-  cells.push_back(std::move(cell));
+  cells.push_back(beam_cell(a, b, points_.start, sections, beta, alpha));
 }
 
 void Beams::prepare() {
@@ -254,32 +171,6 @@ std::string Beams::count() const {
 void Beams::number(Layout& layout) {
   clique_.clear();
   for (const BeamCell& cell : cells) clique_.push_back(layout.cliques.add(blocks_of_ends(points_, connector_of(cell))));
-}
-
-std::vector<Beams::LineForces> Beams::line_forces(const Stage& s) const {
-  if (lines.empty()) return {};
-  std::vector<LineForces> out(cells.size());
-  for (const LineLoad& l : lines) {
-    const double factor = l.load.factor(s.t0, s.t1, s.load_factor);
-    for (size_t k = 0; k < l.at.size(); ++k) {
-      const BeamCell& cell = cells[l.first + k];
-      const auto& [a, b] = l.at[k];
-      if (!l.load.follower) {
-        const auto add = [&](const BeamCell::Shares& of, const Mat3& part) {
-          out[l.first + k].F += factor * ((of[0] + of[1]) * (part * a).transpose() + (of[1] + of[2]) * (part * b).transpose());
-        };
-        const Mat3 on_axis = cell.axis * cell.axis.transpose();
-        add(cell.across, Mat3::Identity() - on_axis), add(cell.along, on_axis);
-        continue;
-      }
-      for (int i = 0; i < 3; ++i) {  // (p_A (1 - t) + p_B t) along directors that are linear between the ends
-        const BeamCell::Shares& of = i == 2 ? cell.along : cell.across;
-        out[l.first + k].K.col(1 + i) += factor * (a[i] * of[0] + b[i] * of[1]);
-        out[l.first + k].K.col(5 + i) += factor * (a[i] * of[1] + b[i] * of[2]);
-      }
-    }
-  }
-  return out;
 }
 
 template <class Use>
@@ -346,7 +237,7 @@ void Beams::each_cell(const Stage& s, const std::vector<LineForces>& line, bool 
 
 void Beams::evaluate(Pass& p) const {
   const Stage& s = p.s;
-  const std::vector<LineForces> line = p.loads ? line_forces(s) : std::vector<LineForces>{};
+  const std::vector<LineForces> line = p.loads ? line_forces(lines, cells, s) : std::vector<LineForces>{};
   each_cell(s, line, p.K != nullptr, false, [&](int k, const Found& found) {
     int kept[12], n = 0;  // rows of bodies that are free
     for (int e = 0; e < 2; ++e) {
@@ -392,21 +283,13 @@ void Beams::add_energy(const Config& q, const Config& v, Energy& sum) const {
 
 void Beams::add_work(const Moment& m, Work& sum) const {
   const Stage& s = m.s;
-  const std::vector<LineForces> line = line_forces(s);
+  const std::vector<LineForces> line = line_forces(lines, cells, s);
   const bool rates = s.h > 0 && own_.has_beta, drags = s.v && own_.has_alpha;
   if (line.empty() && !rates && !drags && !s.dissipation) return;
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
-    if (!line.empty()) {
-      const arc::SectionPoints<double> left = points_of(cell, *s.left);
-      std::array<Vector, 8> F;
-      for (int i = 0; i < 8; ++i) {
-        for (int j = 0; j < 3; ++j) F[i][j] = line[k].F(i, j);
-        for (int j = 0; j < 8; ++j) add_to(F[i], line[k].K(i, j), left.y[j]);
-      }
-      sum.external += work(F, points_of(cell, s.from()), points_of(cell, *s.end));
-    }
+    if (!line.empty()) sum.external += work(line[k].at(points_of(cell, *s.left)), points_of(cell, s.from()), points_of(cell, *s.end));
     sum.add(s, [&](const Config& from, const Config& to, double last, double before) {
       return arc_taken(cell.arc.law, strain_of(cell, from), strain_of(cell, to), recalled(cell, *s.dissipation, from, last, before));
     });
@@ -458,7 +341,7 @@ void Beams::observe(const Sight& sight) {
   const Stage& s = sight.step->s;
   const size_t first = sight.mid.size();
   sight.mid.resize(first + 12 * cells.size());
-  each_cell(s, line_forces(s), false, true, [&](int k, const Found& found) {
+  each_cell(s, line_forces(lines, cells, s), false, true, [&](int k, const Found& found) {
     double* out = sight.mid.data() + first + 12 * static_cast<size_t>(k);
     const arc::SectionPoints<double> at = points_of(cells[k], *s.left);
     for (int end = 0; end < 2; ++end) {

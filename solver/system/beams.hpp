@@ -1,61 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Beams: arc elements between sections, which are bodies of their own or ride on others at an offset and a turn that stay.
 //
-// The mass of an element couples its two sections.  It is constant in their points x = (c, d1, d2, d3), so a step keeps energy and both
-// momenta: along the axis  c = (1 - t + g) c_A + (t - g) c_B + L (t - t^2)/2 (d3A - d3B) + L g/2 (d3A + d3B)  with
-// g = (2 t^3 - 3 t^2 + t)/(1 + Phi), Phi = 12 EI/(GA L^2); of d1 and d2 the mean of a consistent and a lumped one.
+// The mass of an element couples its two sections.  It is constant in their points, so a step keeps energy and both momenta.
 #pragma once
-#include <array>
-#include <vector>
-
-#include "physics/beam_arc.hpp"
-#include "physics/beam_cell.hpp"
-#include "physics/beam_section.hpp"
 #include "physics/section_mesh.hpp"
+#include "system/beam_cells.hpp"
 #include "system/contribution.hpp"
-#include "system/loads.hpp"
 
 namespace hilo {
-
-struct BeamCell {
-  std::array<int, 2> body{};
-  arc::ArcCell<double> arc;
-  /// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds, u the shares of the points of the sections in a point at t [m, m^2]: across the
-  /// axis as the cell bends, and along it as it stretches
-  using Shares = std::array<Eigen::Matrix<double, 8, 1>, 3>;
-  Shares across, along;
-  Vec3 axis;        // as drawn
-  double size = 0;  // of the section [m]
-};
-
-struct Beam {
-  std::string name;
-  int first = 0, n_cells = 0;  // of the list
-};
-
-/// Sections at the places along_arc of a cell.
-using SectionsAlong = std::array<BeamSection, along_arc.size()>;
-BeamSection mean_section(const SectionsAlong& sections);
 
 /// A meshed section of the scene.
 struct NamedSection {
   std::string name;
   SectionMesh mesh;
-};
-
-/// A force per length on the cells of a beam, linear along each cell: in inertial axes, or in axes of the sections, which it then turns
-/// with.
-struct LineLoad {
-  Load load;
-  int first = 0;
-  std::vector<std::array<Vec3, 2>> at;  // both ends of each cell [N/m]
-};
-
-/// Where a section is in the reference configuration: its origin, directors by columns, and the body that it rides on.
-struct SectionPlace {
-  Vec3 at;
-  Mat3 frame;
-  int body;
 };
 
 class Beams final : public Contribution, public Equations, public Stateful, public Observer {
@@ -82,13 +39,6 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
   void tie(Ties& ties) const override;
 
  private:
-  /// What loads by length exert on the points of a cell's sections: F + K y, of the points y.
-  struct LineForces {
-    Eigen::Matrix<double, 8, 3, Eigen::RowMajor> F = Eigen::Matrix<double, 8, 3, Eigen::RowMajor>::Zero();
-    Eigen::Matrix<double, 8, 8, Eigen::RowMajor> K = Eigen::Matrix<double, 8, 8, Eigen::RowMajor>::Zero();
-  };
-  /// On each cell; empty without such loads.
-  std::vector<LineForces> line_forces(const Stage& s) const;
   /// What the kernel found of a cell, one number in every `width`: see ArcCall.
   struct Found {
     int width;

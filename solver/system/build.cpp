@@ -11,6 +11,7 @@
 #include "system/contacts.hpp"
 #include "system/joint_coordinates.hpp"
 #include "system/joints.hpp"
+#include "system/linear_beams.hpp"
 #include "system/linear_regions.hpp"
 #include "system/load_path.hpp"
 #include "system/loads.hpp"
@@ -56,6 +57,7 @@ void Builder::add_contributions() {
   s.add<LinearRegions>(s);
   s.add<PointMasses>(s);
   const Beams& beams = s.add<Beams>(s);
+  s.add<LinearBeams>(s);
   s.add<Welds>(s);
   const Joints& joints = s.add<Joints>(s);
   s.add<Springs>(s, joints);
@@ -127,6 +129,7 @@ std::unique_ptr<System> Builder::build() {
     for (size_t b = 1; b < out_->bodies.size(); ++b) box.extend(out_->bodies[b].Xc);
     for (const BeamCell& cell : out_->part<Beams>().cells)
       for (int e = 0; e < 2; ++e) box.extend(Vec3(out_->bodies[cell.body[e]].Xc + Eigen::Map<const Vec3>(cell.arc.arm[e].v)));
+    for (const LinearSection& s : out_->part<LinearBeams>().sections) box.extend(s.at);
     for (const Joint& j : out_->part<Joints>())
       for (const Entity& e : j.entities)
         if (e.point && j.end[e.end].body >= 0) box.extend(Vec3(out_->bodies[j.end[e.end].body].Xc + e.r));

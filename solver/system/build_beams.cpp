@@ -163,27 +163,44 @@ void Builder::add_beams() {
   Faces faces(scene_, comm_, beams.meshes);
   for (BeamPlan& plan : beam_plans_) {
     const Entry& e = *plan.entry;
+    plan.linear = fidelity_of(e.text("fidelity"), e.where("fidelity")) == Fidelity::linear;
     for (const char* key : {"a", "b"})
-      if (e.given(key)) (key[0] == 'a' ? plan.body.front() : plan.body.back()) = carrier(e, key, true).body;
+      if (e.given(key)) {
+        const int known = plan.linear ? find(e.text(key), e.where(key), Asks::looks).body : -1;
+        (key[0] == 'a' ? plan.body.front() : plan.body.back()) = known >= 0 ? known : carrier(e, key, true).body;
+      }
     const Sections sections(scene_, e, is_static(), faces);
     const std::vector<double>& s = plan.line.s;
+    plan.sections.resize(s.size() - 1);
+    for (size_t k = 0; k + 1 < s.size(); ++k)
+      for (size_t i = 0; i < along_arc.size(); ++i) plan.sections[k][i] = sections.at(std::lerp(s[k], s[k + 1], along_arc[i].t) / s.back());
+    check_carriers(plan);
+    if (plan.linear) continue;
     beams.beams.push_back({e.name, static_cast<int>(beams.cells.size()), static_cast<int>(plan.line.cells.size())});
     for (size_t k = 0; k < plan.line.cells.size(); ++k) {
       const BeamLine::Cell& cell = plan.line.cells[k];
-      if (plan.body[k] == plan.body[k + 1]) e.refuse("cells", "both ends of a cell are on one body: it could not deform");
-      const Body& body = out_->bodies[std::max(plan.body[k], plan.body[k + 1])];
-      if (out_->bodies[plan.body[k]].linear || out_->bodies[plan.body[k + 1]].linear)
-        e.refuse(out_->bodies[plan.body[k]].linear ? "a" : "b",
-                 fmt::format("\"{}\" is a linear region: it has no single position", body.name), "a set of its nodes");
-      SectionsAlong along;
-      for (size_t i = 0; i < along.size(); ++i) along[i] = sections.at(std::lerp(s[k], s[k + 1], along_arc[i].t) / s.back());
-      beams.add_cell({plan.line.at[k], cell.frame_a, plan.body[k]}, {plan.line.at[k + 1], cell.frame_b, plan.body[k + 1]}, along,
+      beams.add_cell({plan.line.at[k], cell.frame_a, plan.body[k]}, {plan.line.at[k + 1], cell.frame_b, plan.body[k + 1]}, plan.sections[k],
                      e.number("damping"), e.number("mass_damping"));
-      const BeamSection mean = mean_section(along);
-      const double L = beams.cells.back().arc.law.length;
-      out_->mass += mean.mass * L;
-      out_->stiffness = std::max(out_->stiffness, mean.C(2, 2) / L);
+      count_cell(plan.sections[k], beams.cells.back());
     }
+  }
+  add_linear_beams();
+}
+
+void Builder::count_cell(const SectionsAlong& sections, const BeamCell& cell) const {
+  const BeamSection section = mean_section(sections);
+  out_->mass += section.mass * cell.arc.law.length;
+  out_->stiffness = std::max(out_->stiffness, section.C(2, 2) / cell.arc.law.length);
+}
+
+void Builder::check_carriers(const BeamPlan& plan) const {
+  const Entry& e = *plan.entry;
+  for (size_t k = 0; k + 1 < plan.body.size(); ++k) {
+    const Body &a = out_->bodies[plan.body[k]], &b = out_->bodies[plan.body[k + 1]];
+    if (plan.body[k] == plan.body[k + 1]) e.refuse("cells", "both ends of a cell are on one body: it could not deform");
+    if (a.linear || b.linear)
+      e.refuse(a.linear ? "a" : "b", fmt::format("\"{}\" is a linear region: it has no single position", (a.linear ? a : b).name),
+               "a set of its nodes");
   }
 }
 

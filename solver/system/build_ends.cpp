@@ -84,7 +84,7 @@ double Builder::spread_of(const std::vector<int>& nodes) const {
   return values[1] <= 1e-12 * values[2] ? 0 : std::sqrt(S.trace() / std::max(1.0, count_owned(nodes)));
 }
 
-Builder::Found Builder::find(const std::string& name, const std::string& where) const {
+Builder::Found Builder::find(const std::string& name, const std::string& where, Asks asks) const {
   Found found;
   if (name == "ground") {
     found.body = 0;
@@ -92,6 +92,7 @@ Builder::Found Builder::find(const std::string& name, const std::string& where) 
   }
   if (const auto it = body_by_name_.find(name); it != body_by_name_.end()) {
     found.body = it->second;
+    if (asks == Asks::acts) acted_on_.insert(found.body);
     return found;
   }
   const auto is_in = [&](const Mesh& m) {

@@ -69,7 +69,7 @@ void Builder::add_stations() {
       Station s;
       s.name = e.name;
       s.sensor = std::string_view(section) == "sensor";
-      const Found found = find(e.text("on"), e.where("on"));
+      const Found found = find(e.text("on"), e.where("on"), Asks::looks);
       if (s.sensor) {
         const Vec3 z = direction(e, "z"), x = direction(e, "x");
         if (std::abs(x.dot(z)) > 1 - 1e-9) throw Error(e.where("x"), e.label() + ": x is parallel to z");

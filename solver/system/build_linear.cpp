@@ -127,6 +127,12 @@ void Builder::set_modal_velocity(int body, const std::vector<Vec3>& nodal, Confi
     }
   }
   comm_.sum(sum);
+  set_velocity(body, sum, v);
+}
+
+void Builder::set_velocity(int body, std::span<const double> sum, Config& v) const {
+  const Body& axes = out_->bodies[body];
+  const Modes& modes = out_->modes[out_->modes_of[body]];
   const Mat3 inertia = axes.J.trace() * Mat3::Identity() - axes.J;
   v.c[body] = Vec3(sum[0], sum[1], sum[2]) / axes.mass;
   v.R[body] = skew(inertia.ldlt().solve(Vec3(sum[3], sum[4], sum[5])));

@@ -11,22 +11,22 @@
 #include "system/beams.hpp"
 #include "system/builder.hpp"
 #include "system/facet.hpp"
+#include "system/linear_beams.hpp"
 #include "system/loads.hpp"
 
 namespace hilo {
 
 /// On the beams that an entry names.
 void Builder::add_line_load(const Entry& e, const Load& load) {
-  Beams& beams = out_->part<Beams>();
   const std::string& on = e.text("on");
   const Vec3 from = e.vector3("force_per_length"), end = e.has("force_per_length_end") ? e.vector3("force_per_length_end") : from;
   bool any = false;
   std::vector<std::string> names;
-  for (const Beam& beam : beams.beams) {
+  const auto add = [&](const Beam& beam, const std::vector<BeamCell>& cells, std::vector<LineLoad>& lines) {
     names.push_back(beam.name);
-    if (fnmatch(on.c_str(), beam.name.c_str(), 0) != 0) continue;
+    if (fnmatch(on.c_str(), beam.name.c_str(), 0) != 0) return;
     std::vector<double> sections{0};
-    for (int k = 0; k < beam.n_cells; ++k) sections.push_back(sections.back() + beams.cells[beam.first + k].arc.law.length);
+    for (int k = 0; k < beam.n_cells; ++k) sections.push_back(sections.back() + cells[beam.first + k].arc.law.length);
     const auto section = [&](const char* key, size_t otherwise) {
       if (!e.has(key)) return otherwise;
       const double s = e.number(key), whole = sections.back();
@@ -49,9 +49,13 @@ void Builder::add_line_load(const Entry& e, const Load& load) {
         line.at.push_back({value(sections[k]), value(sections[k + 1])});
       else
         line.at.push_back({Vec3::Zero(), Vec3::Zero()});
-    beams.lines.push_back(std::move(line));
+    lines.push_back(std::move(line));
     any = true;
-  }
+  };
+  Beams& beams = out_->part<Beams>();
+  for (const Beam& beam : beams.beams) add(beam, beams.cells, beams.lines);
+  LinearBeams& linear = out_->part<LinearBeams>();
+  for (const Beam& beam : linear.beams) add(beam, linear.cells, linear.lines);
   if (!any) throw Error(e.where("on"), fmt::format("{}: no beam \"{}\"", e.label(), on), suggest(on, names));
 }
 

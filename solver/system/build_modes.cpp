@@ -21,23 +21,23 @@ void Builder::reduce_linear_regions() {
   out_->modes_of.resize(out_->bodies.size(), -1);
   if (out_->modes.empty() && !files_.from.empty()) warn(files_.from, "no region is linear: the file is not read");
   if (out_->modes.empty()) return;
-  const Mesh& mesh = mesh_->mesh;
   out_->shape_row.assign(out_->X.size(), -1);
   int n_blocks = 0;
   for (size_t number = 0; number < out_->modes.size(); ++number) {
     Modes& modes = out_->modes[number];
     const Body& axes = out_->bodies[modes.body];
-    RegionParcel parcel = parcel_of(static_cast<int>(number));
+    BeamRegion* beams = beam_region(static_cast<int>(number));
+    RegionParcel parcel = beams ? parcel_of_beams(*beams) : parcel_of(static_cast<int>(number));
     const bool stiffening = parcel.stiffening;
     const double modal_damping = parcel.modal_damping;
     const auto& welds = parcel.welds;
     const auto& local = parcel.local;
     Reduction found;
     if (comm_.rank != 0) SharedCholesky(comm_).serve();
-    std::vector<double>
-        head;  // modes, first frequency left out, omega2, A, levers, then of each weld: rows left out, axes, shares, means and stretches
+    std::vector<double> head;  // modes, first frequency left out, omega2, A, levers, then of each weld: rows left out, axes, shares, means
+                               // and stretches; motions of sections of beams
     if (comm_.rank == 0) {
-      const ReductionInput in = reduction_input(parcel, axes);
+      const ReductionInput in = beams ? beam_input(*beams, parcel) : reduction_input(parcel, axes);
       const auto n = static_cast<int>(in.X.size());
       found = reduction_of(in, axes, parcel.where);
       const auto m = found.omega2.size();
@@ -81,6 +81,10 @@ void Builder::reduce_linear_regions() {
           }
           head.insert(head.end(), mean.data(), mean.data() + 3), head.insert(head.end(), stretch.data(), stretch.data() + 9);
         }
+      }
+      if (beams) {
+        const std::vector<double> motions = section_motions(*beams, found.shapes);
+        head.insert(head.end(), motions.begin(), motions.end());
       }
     }
     {
@@ -132,45 +136,8 @@ void Builder::reduce_linear_regions() {
       for (int j = 0; j < m; ++j) w->mean[j] = next_vector(), w->stretch[j] = next_matrix();
     }
     out_->part<LinearRegions>().regions.push_back(std::move(made));
-    std::map<std::pair<int, Shape>, SolidBatch> own;
-    std::vector<std::int64_t> cell_nodes;
-    for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
-      if (!is_of(e, modes.body)) continue;
-      const int region = mesh.region[e];
-      const Shape shape = taken_as(e, cell_nodes);
-      auto it = own.find({region, shape});
-      if (it == own.end()) it = own.emplace(std::pair(region, shape), batch_of(region, shape)).first;
-      it->second.cells.push_back(static_cast<int>(e));
-      for (const std::int64_t node : cell_nodes) it->second.nodes.push_back(static_cast<int>(node));
-    }
-    for (auto& [kind, batch] : own)
-      out_->part<LinearRegions>().cells.push_back(std::move(batch)), out_->part<LinearRegions>().body_of_cells.push_back(modes.body);
-
-    // shapes at the local nodes that follow, so many nodes at a time
-    std::vector<int> mine;
-    for (size_t i = 0; i < out_->X.size(); ++i)
-      if (out_->follower[i] == modes.body) mine.push_back(static_cast<int>(i));
-    const size_t at_once = 100000, most = static_cast<size_t>(comm_.max(static_cast<double>(mine.size())));
-    out_->shapes.reserve(out_->shapes.size() + mine.size() * 3 * static_cast<size_t>(modes.n_blocks));
-    for (size_t from = 0; from < most; from += at_once) {
-      const std::span some =
-          std::span(mine).subspan(std::min(from, mine.size()), std::min(at_once, mine.size() - std::min(from, mine.size())));
-      std::vector<std::vector<std::int64_t>> ask(comm_.size);
-      for (const int i : some) ask[0].push_back(mesh_->node_global[i]);
-      const auto asked = comm_.exchange(ask);
-      std::vector<std::vector<double>> answer(comm_.size);
-      for (int k = 0; k < comm_.size && comm_.rank == 0; ++k)
-        for (const std::int64_t row : asked[k])
-          for (int j = 0; j < m; ++j)
-            for (int c = 0; c < 3; ++c) answer[k].push_back(found.shapes(3 * local.at(row) + c, j));
-      const auto shapes = comm_.exchange(answer)[0];
-      for (size_t k = 0; k < some.size(); ++k) {
-        out_->shape_row[some[k]] = static_cast<std::int64_t>(out_->shapes.size());
-        for (int j = 0; j < 3 * modes.n_blocks; ++j)
-          out_->shapes.push_back(j < m ? Vec3(shapes[3 * (k * m + j)], shapes[3 * (k * m + j) + 1], shapes[3 * (k * m + j) + 2])
-                                       : Vec3::Zero());
-      }
-    }
+    if (beams) set_sections(*beams, std::span(head).subspan(at));
+    if (!beams) spread_shapes(modes, found, local);
     if (!reductions_.empty() && reductions_.back().found.A.size() == 0) reductions_.back().found = std::move(found);
   }
   comm_.on_first([&] {
@@ -178,6 +145,51 @@ void Builder::reduce_linear_regions() {
   });
   out_->start.eta.assign(n_blocks, Vec3::Zero());
   out_->start.Y.assign(3 * static_cast<size_t>(n_blocks), Mat3::Zero());
+}
+
+/// Cells of a region to those that stress is recovered from, and its modes at the local nodes that follow it.  Collective.
+void Builder::spread_shapes(const Modes& modes, const Reduction& found, const std::map<std::int64_t, int>& local) {
+  const Mesh& mesh = mesh_->mesh;
+  const int m = modes.n_modes;
+  std::map<std::pair<int, Shape>, SolidBatch> own;
+  std::vector<std::int64_t> cell_nodes;
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
+    if (!is_of(e, modes.body)) continue;
+    const int region = mesh.region[e];
+    const Shape shape = taken_as(e, cell_nodes);
+    auto it = own.find({region, shape});
+    if (it == own.end()) it = own.emplace(std::pair(region, shape), batch_of(region, shape)).first;
+    it->second.cells.push_back(static_cast<int>(e));
+    for (const std::int64_t node : cell_nodes) it->second.nodes.push_back(static_cast<int>(node));
+  }
+  for (auto& [kind, batch] : own)
+    out_->part<LinearRegions>().cells.push_back(std::move(batch)), out_->part<LinearRegions>().body_of_cells.push_back(modes.body);
+
+  // shapes at the local nodes that follow, so many nodes at a time
+  std::vector<int> mine;
+  for (size_t i = 0; i < out_->X.size(); ++i)
+    if (out_->follower[i] == modes.body) mine.push_back(static_cast<int>(i));
+  const size_t at_once = 100000, most = static_cast<size_t>(comm_.max(static_cast<double>(mine.size())));
+  out_->shapes.reserve(out_->shapes.size() + mine.size() * 3 * static_cast<size_t>(modes.n_blocks));
+  for (size_t from = 0; from < most; from += at_once) {
+    const std::span some =
+        std::span(mine).subspan(std::min(from, mine.size()), std::min(at_once, mine.size() - std::min(from, mine.size())));
+    std::vector<std::vector<std::int64_t>> ask(comm_.size);
+    for (const int i : some) ask[0].push_back(mesh_->node_global[i]);
+    const auto asked = comm_.exchange(ask);
+    std::vector<std::vector<double>> answer(comm_.size);
+    for (int k = 0; k < comm_.size && comm_.rank == 0; ++k)
+      for (const std::int64_t row : asked[k])
+        for (int j = 0; j < m; ++j)
+          for (int c = 0; c < 3; ++c) answer[k].push_back(found.shapes(3 * local.at(row) + c, j));
+    const auto shapes = comm_.exchange(answer)[0];
+    for (size_t k = 0; k < some.size(); ++k) {
+      out_->shape_row[some[k]] = static_cast<std::int64_t>(out_->shapes.size());
+      for (int j = 0; j < 3 * modes.n_blocks; ++j)
+        out_->shapes.push_back(j < m ? Vec3(shapes[3 * (k * m + j)], shapes[3 * (k * m + j) + 1], shapes[3 * (k * m + j) + 2])
+                                     : Vec3::Zero());
+    }
+  }
 }
 
 }  // namespace hilo

@@ -205,16 +205,21 @@ ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& 
   }
   std::erase_if(in.loads, [](const auto& load) { return load.empty(); });
   for (auto& load : in.loads) std::stable_sort(load.begin(), load.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  set_wishes(in, parcel, axes);
+  if (!parcel.shapes.empty()) in.given = given_shapes(parcel);
+  return in;
+}
+
+/// How many modes are asked for, and what there is to find them with.
+void Builder::set_wishes(ReductionInput& in, const RegionParcel& parcel, const Body& axes) const {
   const double step = scene_.table("time").has("step") ? scene_.table("time").number("step") : 0;
   in.centre = axes.Xc;
   in.n_vibrations = parcel.n_vibrations, in.may_be_fewer = !parcel.modes_given;
   in.up_to = parcel.up_to > 0 ? parcel.up_to : step > 0 ? 0.1 / step : 0;
   in.stiffening = parcel.stiffening, in.length = axes.size;
   in.memory = room_.memory, in.scratch = room_.scratch;
-  if (!parcel.shapes.empty()) in.given = given_shapes(parcel);
   if (!is_quiet() && 3 * in.X.size() > told_from)
     in.progress = [name = axes.name](const std::string& what) { fmt::print(stderr, "linear region \"{}\": {}\n", name, what); };
-  return in;
 }
 
 /// The modes that a region is given, at its nodes.  On rank 0.

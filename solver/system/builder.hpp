@@ -3,12 +3,14 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "model/beam_line.hpp"
 #include "physics/axes.hpp"
 #include "physics/spring_kinds.hpp"
+#include "system/beam_cells.hpp"
 #include "system/factor_room.hpp"
 #include "system/mortar.hpp"
 #include "system/pair_facet.hpp"
@@ -74,19 +76,37 @@ class Builder {
   void weld_neighbours();
   /// Velocities of a linear region that has the momenta, also those of its modes, of its nodes moving with `nodal` (n_nodes).  Collective.
   void set_modal_velocity(int body, const std::vector<Vec3>& nodal, Config& v) const;
+  /// Momentum, angular momentum about the centre, momenta of modes.
+  void set_velocity(int body, std::span<const double> momenta, Config& v) const;
   // build_reduction.cpp
   bool is_of(std::int64_t cell, int linear_body) const;
   RegionParcel parcel_of(int number);
   ReductionInput reduction_input(const RegionParcel& parcel, const Body& axes) const;
+  void set_wishes(ReductionInput& in, const RegionParcel& parcel, const Body& axes) const;
   Eigen::MatrixXd given_shapes(const RegionParcel& parcel) const;
   Reduction reduction_of(const ReductionInput& in, const Body& axes, const std::string& where);
   std::string kept_place(const std::string& region, const ReductionKey& key) const;
   void keep_reductions() const;
   // build_modes.cpp
   void reduce_linear_regions();
+  void spread_shapes(const Modes& modes, const Reduction& found, const std::map<std::int64_t, int>& local);
   // build_beams.cpp
   void add_sections();
   void add_beams();
+  // build_linear_beams.cpp
+  struct BeamPlan;
+  struct BeamRegion;
+  void check_carriers(const BeamPlan& plan) const;
+  void count_cell(const SectionsAlong& sections, const BeamCell& cell) const;
+  void add_linear_beams();
+  void add_beam_region(std::vector<int> plans, const std::function<bool(int)>& only_here);
+  void add_mean_axes(BeamRegion& region);
+  BeamRegion* beam_region(int number);
+  RegionParcel parcel_of_beams(BeamRegion& region);
+  ReductionInput beam_input(const BeamRegion& region, const RegionParcel& parcel) const;
+  void add_load_shapes(const BeamRegion& region, const LineLoad& line, ReductionInput& in) const;
+  void set_sections(const BeamRegion& region, std::span<const double> motions);
+  std::vector<double> section_motions(const BeamRegion& region, const Eigen::MatrixXd& shapes) const;
   // build_shells.cpp
   void find_shells();
   /// The shape that a cell is taken as, and its nodes in the order of that shape.
@@ -102,7 +122,8 @@ class Builder {
     bool linear = false;  // some of them follow a linear region
     int region = -1;
   };
-  Found find(const std::string& name, const std::string& where) const;
+  enum class Asks { acts, looks };  // what looks at a section of a linear beam needs no unknowns there
+  Found find(const std::string& name, const std::string& where, Asks asks = Asks::acts) const;
   /// The carrier of a joint's or spring's end; makes a patch of a set on a flexible region.
   Carrier carrier(const Entry& entry, std::string_view key, bool needs_orientation);
   int held_to(int node) const;
@@ -192,6 +213,23 @@ class Builder {
     const Entry* entry;
     BeamLine line;
     std::vector<int> body;  // of each section, -1: not yet known
+    bool linear = false;
+    std::vector<SectionsAlong> sections{};  // of each cell
+  };
+  /// Linear beams that hang together by their sections and by bodies without mass: one set of mean axes and modes.
+  struct BeamRegion {
+    int modes = -1;
+    std::vector<int> plans;
+    struct Place {
+      int body;
+      bool only_here;             // nothing but this region moves it: carried, unless something acts on it
+      bool carried = false;       // known last
+      std::vector<int> sections;  // of LinearBeams, which ride on it
+    };
+    std::vector<Place> places;
+    std::vector<int> sections;  // of LinearBeams
+    int first_cell = 0, n_cells = 0;
+    double arm = 0;  // of the nodes from the origins of their sections [m]
   };
 
   const Scene& scene_;
@@ -209,6 +247,8 @@ class Builder {
   std::map<std::string, int> body_by_name_;  // [[body]] entries
   std::map<std::string, int> patch_by_name_;
   std::vector<BeamPlan> beam_plans_;
+  std::vector<BeamRegion> beam_regions_;
+  mutable std::set<int> acted_on_;                         // bodies that an entry joins, loads or moves, and does not only look at
   std::vector<std::vector<MortarRow>> mortar_;             // by tie
   std::vector<std::pair<std::string, std::string>> tied_;  // place and label, by tie
   std::vector<std::string> held_by_;                       // per node: the entry that made it a follower of a patch or motion

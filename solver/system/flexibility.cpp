@@ -57,13 +57,23 @@ Flexibility::Flexibility(const ReductionInput& in, const RegionCells& cells, con
   number(in);
   if (n_blocks_ == 0) return;
   add_cells();
-  if (free_)
+  if (free_ && std::ranges::all_of(is_of_block_, [](char of_block) { return of_block != 0; })) {
+    double arm = 0;
+    for (size_t i = 0; i < block_.size(); ++i)
+      if (block_[i] == block_[0]) arm = std::max(arm, arm_[i].norm());
+    for (const int k : {0, 1}) {
+      const double stiff = stiff_ * (k == 0 ? 1 : arm * arm), springs[3] = {stiff, stiff, stiff};
+      factor_.add_diagonal(block_[0] + k, springs);
+      for (int i = 0; i < 3; ++i) springs_.emplace_back(3 * (block_[0] + k) + i, stiff);
+    }
+  } else if (free_) {
     for (const int dof : determinate_support(in.X)) {
       double spring[3] = {};
       spring[dof % 3] = stiff_;
       factor_.add_diagonal(block_[dof / 3], spring);
       springs_.emplace_back(3 * block_[dof / 3] + dof % 3, stiff_);
     }
+  }
   if (!factor_.factor(single_, folder_, time_left(in.progress, "factor")))
     throw Error("", "the cells of the region do not hold together", "one piece, with no hinges of single nodes");
 }
@@ -119,6 +129,7 @@ void Flexibility::add_cells() {
     const auto n = static_cast<size_t>(info(b.shape).n_nodes);
     for (size_t at = 0; at < b.nodes.size(); at += n) blocks_of({b.nodes.data() + at, n}), cliques.add(list);
   }
+  for (const PointCell& c : in_.points) blocks_of(c.nodes), cliques.add(list);
   const int first_line = cliques.size();
   for (const Line& line : lines_) cliques.add(std::array{line.block});
   factor_.structure(std::move(cliques), n_blocks_);

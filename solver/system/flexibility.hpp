@@ -9,8 +9,8 @@
 
 namespace hilo {
 
-/// K^-1 of what is not held, on vectors over all nodes.  A region that nothing holds gets springs along six directions of three nodes,
-/// statically determinate, so that self-balanced loads do not feel them; its rigid motions are taken out of loads and answers.
+/// K^-1 of what is not held, on vectors over all nodes.  A region that nothing holds gets springs along six directions of three nodes, or
+/// on a block, statically determinate, so that self-balanced loads do not feel them; its rigid motions are taken out of loads and answers.
 class Flexibility {
  public:
   using Matrix = Eigen::MatrixXd;

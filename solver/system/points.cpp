@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "system/linear_beams.hpp"
+#include "system/system.hpp"
+
 namespace hilo {
 
 void Points::move(Config& q, std::span<const double> z) const {
@@ -74,6 +77,7 @@ Vec3 Points::followed(const Config& q, size_t node) const {
 void Points::follow(Config& q) const {
   for (size_t i = 0; i < q.x.size(); ++i)
     if (follower[i] >= 0) q.x[i] = followed(q, i);
+  if (!modes.empty()) static_cast<const System&>(*this).part<LinearBeams>().carry(q);  // points are those of a system
 }
 
 std::vector<Vec3> Points::all_nodes(const Config& q) const {

@@ -70,6 +70,13 @@ ReductionKey key_of(const ReductionInput& in) {
     cells += own;
     materials += Digest().add(in.made_of[k]).add(b.density).add(b.area).add(b.alpha).add(b.beta).add(own).value();
   }
+  for (const PointCell& c : in.points) {
+    cells += of_nodes(c.nodes);
+    Digest own;
+    for (const double x : c.stiffness.reshaped()) own.add(x);
+    for (const double x : c.mass.reshaped()) own.add(x);
+    materials += own.add(c.beta).add(c.alpha).value();
+  }
   Digest mesh;
   for (const Vec3& X : in.X)
     for (const double x : X) mesh.add(x);

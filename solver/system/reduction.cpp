@@ -53,6 +53,8 @@ using Vector = Eigen::VectorXd;
 constexpr Index n_bending = 6;        // soft modes, lowest first, that derivatives are made of,
 constexpr Index n_held = 4;           // and the vibrations between interfaces that they come from
 constexpr Index most_stiffened = 60;  // modes of a region whose products are kept
+constexpr double stiffest = 1e9;      // squared frequency of modes of beams over the first one
+constexpr double widest = 1e8;        // between squared frequencies of vibrations: stiffer ones would cost the softest its digits
 
 Matrix rigid_motions(const std::vector<Vec3>& X, const Vec3& about) {
   Matrix out = Matrix::Zero(3 * static_cast<Index>(X.size()), 6);
@@ -192,7 +194,9 @@ Matrix vibrations(const ReductionInput& in, const RegionCells& cells, const Flex
     const Vector& lambda = found.omega2;
     Index keep = 0;
     const double limit = std::pow(2 * std::numbers::pi * in.up_to, 2);
-    while (keep < std::min<Index>(wanted, lambda.size()) && (in.up_to == 0 || keep < 4 || lambda[keep] <= limit)) ++keep;
+    while (keep < std::min<Index>(wanted, lambda.size()) && (in.up_to == 0 || keep < 4 || lambda[keep] <= limit) &&
+           lambda[keep] <= widest * lambda[0])
+      ++keep;
     if (keep == wanted && wanted < std::min(in.n_vibrations, most)) {
       wanted = std::min(2 * wanted, std::min(in.n_vibrations, most));
       continue;
@@ -214,7 +218,9 @@ struct ModeBasis {
   const RegionCells& cells;
   const Matrix &rigid, &M_rigid;
   Index spanned;  // first columns of the first part that rigid motions and the others span: to take both away would leave rounding
-  ModeBasis(const RegionCells& c, const Matrix& r, const Matrix& Mr, Index n) : cells(c), rigid(r), M_rigid(Mr), spanned(n) {}
+  bool is_thin;   // beams: stretch is so much stiffer than bending that small parts of a motion bear much of the load
+  ModeBasis(const RegionCells& c, const Matrix& r, const Matrix& Mr, Index n, bool thin)
+      : cells(c), rigid(r), M_rigid(Mr), spanned(n), is_thin(thin) {}
 
   void find(const std::vector<Matrix>& parts, Reduction& out) const {
     Index columns = -spanned;
@@ -235,6 +241,7 @@ struct ModeBasis {
     for (Index k = 0; k < V.cols(); ++k)
       if (after[k] > 1e-8 * before[k] && after[k] > 0)
         V.col(kept) = (V.col(k) / after[k]).eval(), MV.col(kept) = (MV.col(k) / after[k]).eval(), ++kept;
+    if (is_thin) kept = separate(V, MV, kept);
     V.conservativeResize(Eigen::NoChange, kept), MV.conservativeResize(Eigen::NoChange, kept);
     const Matrix G = transposed_times(V, MV);
     const Eigen::SelfAdjointEigenSolver<Matrix> gram(G);
@@ -246,9 +253,40 @@ struct ModeBasis {
     const Matrix Kr = transposed_times(V, cells.times(RegionCells::stiffness, V)), Mr = transposed_times(V, cells.times_mass(V));
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes((Kr + Kr.transpose()) / 2, (Mr + Mr.transpose()) / 2);
     out.omega2 = modes.eigenvalues();
+    if (is_thin && m > 0 && out.omega2[m - 1] > stiffest * out.omega2[0]) {
+      Index soft = 0;
+      while (out.omega2[soft] <= stiffest * std::max(0.0, out.omega2[0])) ++soft;
+      return find_again(product(V, modes.eigenvectors().leftCols(soft)), out);
+    }
     if (m > 0 && !(out.omega2[0] > 1e-12 * out.omega2[m - 1]))
       throw Error("", "the cells of the region do not hold together", "one piece, with no hinges of single nodes");
     out.shapes = product(V, modes.eigenvectors());
+    check(out);
+  }
+
+  /// Each of the first `n` columns less those before it: those of which something is left come first, their number is returned.
+  static Index separate(Matrix& V, Matrix& MV, Index n) {
+    constexpr double least = 1e-5;  // of the column; less is rounding of those that are all but in the span of others
+    Index kept = 0;
+    for (Index k = 0; k < n; ++k) {
+      Vector v = V.col(k), Mv = MV.col(k);
+      for (int pass = 0; pass < 2; ++pass) {
+        const Vector share = MV.leftCols(kept).transpose() * v;
+        v -= V.leftCols(kept) * share, Mv -= MV.leftCols(kept) * share;
+      }
+      const double left = std::sqrt(std::max(0.0, v.dot(Mv)));
+      if (left < least) continue;
+      V.col(kept) = v / left, MV.col(kept) = Mv / left, ++kept;
+    }
+    return kept;
+  }
+
+  /// Frequencies once more of motions without the stiffest, whose rounding was as large as the softest.
+  void find_again(const Matrix& shapes, Reduction& out) const {
+    const Matrix Kr = transposed_times(shapes, cells.times(RegionCells::stiffness, shapes)),
+                 Mr = transposed_times(shapes, cells.times_mass(shapes));
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes((Kr + Kr.transpose()) / 2, (Mr + Mr.transpose()) / 2);
+    out.omega2 = modes.eigenvalues(), out.shapes = product(shapes, modes.eigenvectors());
     check(out);
   }
 
@@ -336,7 +374,7 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   const auto tell = [&](const std::string& what) {
     if (in.progress) in.progress(what);
   };
-  const RegionCells cells(in.X, in.cells);
+  const RegionCells cells(in.X, in.cells, in.points);
   Matrix rigid = rigid_motions(in.X, in.centre);
   {  // orthonormal in mass
     const Matrix G = rigid.transpose() * cells.times_mass(rigid);
@@ -351,7 +389,7 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   std::vector<Matrix> parts = is_given ? std::vector<Matrix>{in.given} : found_modes(in, cells, flexibility, interfaces.columns, out);
 
   tell("basis");
-  const ModeBasis basis(cells, rigid, M_rigid, interfaces.n_first);  // moved alike, all interfaces make a rigid motion
+  const ModeBasis basis(cells, rigid, M_rigid, interfaces.n_first, !in.points.empty());  // moved alike, all interfaces make a rigid motion
   basis.find(parts, out);
   if (in.stiffening && !is_given) {
     tell("modal derivatives");
@@ -380,11 +418,12 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   out.soft = std::move(second.soft), out.second_order = std::move(second.forces);
   factor.end();
   out.A = moments(in, out.shapes, cells.scalar_mass());
-  const auto any = [&](double SolidBatch::*factor) {
-    return std::any_of(in.cells.begin(), in.cells.end(), [&](const SolidBatch& b) { return b.*factor > 0; });
+  const auto any = [&](double SolidBatch::*of_batch, double PointCell::*of_cell) {
+    return std::ranges::any_of(in.cells, [&](const SolidBatch& b) { return b.*of_batch > 0; }) ||
+           std::ranges::any_of(in.points, [&](const PointCell& c) { return c.*of_cell > 0; });
   };
-  if (any(&SolidBatch::alpha)) out.A_damped = moments(in, out.shapes, cells.scalar(RegionCells::damping_by_mass));
-  if (any(&SolidBatch::beta)) {
+  if (any(&SolidBatch::alpha, &PointCell::alpha)) out.A_damped = moments(in, out.shapes, cells.scalar(RegionCells::damping_by_mass));
+  if (any(&SolidBatch::beta, &PointCell::beta)) {
     const Matrix C = transposed_times(out.shapes, cells.times(RegionCells::damping_by_stiffness, out.shapes));
     out.viscous = (C + C.transpose()) / 2;
   }

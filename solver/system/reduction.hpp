@@ -15,6 +15,7 @@
 #include <Eigen/Dense>
 #include <functional>
 
+#include "system/point_cell.hpp"
 #include "system/quadratic_strain.hpp"
 #include "system/solids.hpp"
 
@@ -30,6 +31,7 @@ struct ReductionInput {
   std::vector<Vec3> X;                                   // nodes of the region
   std::vector<SolidBatch> cells;                         // over these nodes
   std::vector<std::string> made_of;                      // what each of them is made of, in words
+  std::vector<PointCell> points;                         // cells given by their matrices
   std::vector<std::vector<int>> rigid;                   // interfaces that move as rigid bodies,
   std::vector<std::string> rigid_names;                  // and their names
   std::vector<int> free;                                 // nodes of an interface that move freely

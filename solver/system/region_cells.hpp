@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 
+#include "system/point_cell.hpp"
 #include "system/solids.hpp"
 
 namespace hilo {
@@ -12,8 +13,9 @@ class RegionCells {
  public:
   /// Damping: beta times the stiffness, alpha times the mass.
   enum Kind { stiffness, mass, damping_by_stiffness, damping_by_mass };
-  /// Cells over these nodes; both are kept by reference.
-  RegionCells(const std::vector<Vec3>& X, const std::vector<SolidBatch>& cells) : X_(X), cells_(cells), mass_(scalar(mass)) {}
+  /// Cells over these nodes; all are kept by reference.
+  RegionCells(const std::vector<Vec3>& X, const std::vector<SolidBatch>& cells, std::span<const PointCell> points)
+      : X_(X), cells_(cells), points_(points), mass_(scalar(mass)) {}
 
   /// Visit nodes and matrix (3n x 3n, row major) of each cell; the stiffness is the slope of the force at the displacements u (3 n_nodes),
   /// or at rest.
@@ -53,6 +55,16 @@ class RegionCells {
         }
       }
     }
+    for (const PointCell& c : points_) {
+      const double factor = kind == damping_by_stiffness ? c.beta : kind == damping_by_mass ? c.alpha : 1;
+      Eigen::Matrix<double, 24, 24> K = factor * c.stiffness;
+      if (of_mass) {
+        K.setZero();
+        for (int a = 0; a < 8; ++a)
+          for (int b = 0; b < 8; ++b) K.block<3, 3>(3 * a, 3 * b).diagonal().setConstant(factor * c.mass(a, b));
+      }
+      visit(std::span<const int>(c.nodes), K.data());
+    }
   }
   /// A mass matrix, the same in every direction (n_nodes x n_nodes).
   using Scalar = Eigen::SparseMatrix<double, Eigen::RowMajor>;
@@ -68,6 +80,7 @@ class RegionCells {
  private:
   const std::vector<Vec3>& X_;
   const std::vector<SolidBatch>& cells_;
+  std::span<const PointCell> points_;
   Scalar mass_;
 };
 

@@ -70,6 +70,15 @@ SecondOrder second_order(const ReductionInput& in, const Matrix& modes, const Ve
                        static_cast<int>(n_pairs));
     filled = 0;
   };
+  const auto add_products = [&](Index point) {
+    double* row = products.data() + 6 * point;
+    for (Index j = 0; j < n; ++j)
+      for (Index i = 0; i <= j; ++i, row += products.rows()) {
+        const Eigen::Map<const Mat3> Hi(Hs.col(i).data()), Hj(Hs.col(j).data());  // as transposed: columns are u_i,*
+        const Mat3 G = Hi * Hj.transpose();                                       // sum_k u_k,a w_k,b
+        for (int c = 0; c < 3; ++c) row[c] = G(c, c), row[3 + c] = G((c + 1) % 3, (c + 2) % 3) + G((c + 2) % 3, (c + 1) % 3);
+      }
+  };
   CellGradients at;
   std::vector<Vec3> X;
   for (const SolidBatch& b : in.cells) {
@@ -93,16 +102,20 @@ SecondOrder second_order(const ReductionInput& in, const Matrix& modes, const Ve
         S.leftCols(m).noalias() = at.volume[p] * (C * strain);
         S.col(m) << at.volume[p], at.volume[p], at.volume[p], 0, 0, 0;
         volume += at.volume[p];
-        double* row = products.data() + 6 * filled;
-        for (Index j = 0; j < n; ++j)
-          for (Index i = 0; i <= j; ++i, row += products.rows()) {
-            const Eigen::Map<const Mat3> Hi(Hs.col(i).data()), Hj(Hs.col(j).data());  // as transposed: columns are u_i,*
-            const Mat3 G = Hi * Hj.transpose();                                       // sum_k u_k,a w_k,b
-            for (int c = 0; c < 3; ++c) row[c] = G(c, c), row[3 + c] = G((c + 1) % 3, (c + 2) % 3) + G((c + 2) % 3, (c + 1) % 3);
-          }
+        add_products(filled);
         if (++filled == run_of_points) add();
       }
     }
+  }
+  for (const PointCell& c : in.points) {
+    gather(all, c.nodes, local), gather(soft, c.nodes, soft_local);
+    Hs.rightCols(n - 3) = c.gradient * soft_local;
+    auto S = stress.middleRows(6 * filled, 6);
+    S.leftCols(m) = c.stress * local;
+    S.col(m) << c.length, c.length, c.length, 0, 0, 0;
+    volume += c.length;
+    add_products(filled);
+    if (++filled == run_of_points) add();
   }
   add();
   if (volume > 0) out.forces.row(m) /= volume;

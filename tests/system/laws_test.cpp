@@ -212,8 +212,13 @@ void add_beams(std::vector<Variant>& out) {
   std::string text = base;
   for (const auto& [word, by] : {std::pair{"REGION", ""}, {"JOINT", "spherical"}, {"AXIS", ""}})
     text.replace(text.find(word), std::strlen(word), by);
-  for (const char* more : {"", "damping = 0.02\n", "mass_damping = 0.7\n", "orientation = [1, 0.2, 0.3]\n"})
+  for (const char* more : {"", "damping = 0.02\n", "mass_damping = 0.7\n", "orientation = [1, 0.2, 0.3]\n",
+                           "fidelity = \"linear\"\ndamping = 0.02\nmass_damping = 0.7\n"})
     out.push_back({"beam", std::string("beam ") + more + " on bodies", text + any_section + arc + "a = \"one\"\nb = \"two\"\n" + more});
+  out.push_back({"beam", "linear beam under a load that turns with it",
+                 text + any_section + arc +
+                     "a = \"one\"\nb = \"two\"\nfidelity = \"linear\"\n[[load]]\nkind = \"line\"\nname = \"l\"\non = \"it\"\n"
+                     "force_per_length = [0.3, 0.5, 0.2]\nforce_per_length_end = [0.1, -0.4, 0.7]\nfollower = true\n"});
   out.push_back({"beam", "beam with a corner on a set",
                  text + any_section +
                      "[beam.it]\npoints = [[0.2, 0.1, 2.1], [0.3, 0.4, 2.2], [0.3, 0.2, 0.8]]\ncells = [1, 2]\n"
