@@ -267,13 +267,14 @@ struct ModeBasis {
   /// Of beams stretch is so much stiffer than bending that small parts of a motion bear much of the load.  Each of the first `n` columns
   /// less those before it: those of which something is left come first, their number is returned.
   Index separate(Matrix& V, Matrix& MV, Index n) const {
-    constexpr double least = 1e-6;  // of the column; less is rounding of those that are all but in the span of others
+    constexpr double least = 1e-5;  // of the column; less is rounding of those that are all but in the span of others
     Index kept = 0;
     for (Index k = 0; k < n; ++k) {
       Vector v = V.col(k), Mv = MV.col(k);
       for (int pass = 0; pass < 2; ++pass) {
         const Vector share = MV.leftCols(kept).transpose() * v;
         v -= V.leftCols(kept) * share;
+        v -= rigid * Vector(M_rigid.transpose() * v);
         for (const auto* sets : {&in.rigid, &in.blocks})
           for (const auto& set : *sets) move_as_one(set, v);
         Mv = cells.times_mass(v);
