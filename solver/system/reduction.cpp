@@ -218,9 +218,9 @@ struct ModeBasis {
   const RegionCells& cells;
   const Matrix &rigid, &M_rigid;
   Index spanned;  // first columns of the first part that rigid motions and the others span: to take both away would leave rounding
-  bool is_thin;   // beams: stretch is so much stiffer than bending that small parts of a motion bear much of the load
-  ModeBasis(const RegionCells& c, const Matrix& r, const Matrix& Mr, Index n, bool thin)
-      : cells(c), rigid(r), M_rigid(Mr), spanned(n), is_thin(thin) {}
+  const ReductionInput& in;
+  ModeBasis(const RegionCells& c, const Matrix& r, const Matrix& Mr, Index n, const ReductionInput& input)
+      : cells(c), rigid(r), M_rigid(Mr), spanned(n), in(input) {}
 
   void find(const std::vector<Matrix>& parts, Reduction& out) const {
     Index columns = -spanned;
@@ -241,7 +241,7 @@ struct ModeBasis {
     for (Index k = 0; k < V.cols(); ++k)
       if (after[k] > 1e-8 * before[k] && after[k] > 0)
         V.col(kept) = (V.col(k) / after[k]).eval(), MV.col(kept) = (MV.col(k) / after[k]).eval(), ++kept;
-    if (is_thin) kept = separate(V, MV, kept);
+    if (!in.points.empty()) kept = separate(V, MV, kept);
     V.conservativeResize(Eigen::NoChange, kept), MV.conservativeResize(Eigen::NoChange, kept);
     const Matrix G = transposed_times(V, MV);
     const Eigen::SelfAdjointEigenSolver<Matrix> gram(G);
@@ -253,9 +253,9 @@ struct ModeBasis {
     const Matrix Kr = transposed_times(V, cells.times(RegionCells::stiffness, V)), Mr = transposed_times(V, cells.times_mass(V));
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes((Kr + Kr.transpose()) / 2, (Mr + Mr.transpose()) / 2);
     out.omega2 = modes.eigenvalues();
-    if (is_thin && m > 0 && out.omega2[m - 1] > stiffest * out.omega2[0]) {
+    if (!in.points.empty() && m > 0 && out.omega2[0] > 0 && out.omega2[m - 1] > stiffest * out.omega2[0]) {
       Index soft = 0;
-      while (out.omega2[soft] <= stiffest * std::max(0.0, out.omega2[0])) ++soft;
+      while (out.omega2[soft] <= stiffest * out.omega2[0]) ++soft;
       return find_again(product(V, modes.eigenvectors().leftCols(soft)), out);
     }
     if (m > 0 && !(out.omega2[0] > 1e-12 * out.omega2[m - 1]))
@@ -264,21 +264,36 @@ struct ModeBasis {
     check(out);
   }
 
-  /// Each of the first `n` columns less those before it: those of which something is left come first, their number is returned.
-  static Index separate(Matrix& V, Matrix& MV, Index n) {
+  /// Of beams stretch is so much stiffer than bending that small parts of a motion bear much of the load.  Each of the first `n` columns
+  /// less those before it: those of which something is left come first, their number is returned.
+  Index separate(Matrix& V, Matrix& MV, Index n) const {
     constexpr double least = 1e-5;  // of the column; less is rounding of those that are all but in the span of others
     Index kept = 0;
     for (Index k = 0; k < n; ++k) {
       Vector v = V.col(k), Mv = MV.col(k);
       for (int pass = 0; pass < 2; ++pass) {
         const Vector share = MV.leftCols(kept).transpose() * v;
-        v -= V.leftCols(kept) * share, Mv -= MV.leftCols(kept) * share;
+        v -= V.leftCols(kept) * share;
+        v -= rigid * Vector(M_rigid.transpose() * v);
+        for (const auto* sets : {&in.rigid, &in.blocks})
+          for (const auto& set : *sets) move_as_one(set, v);
+        Mv = cells.times_mass(v);
       }
       const double left = std::sqrt(std::max(0.0, v.dot(Mv)));
       if (left < least) continue;
       V.col(kept) = v / left, MV.col(kept) = Mv / left, ++kept;
     }
     return kept;
+  }
+
+  /// Nodes of sections of beams without what rounding makes of them: by the first four, which stand along the axes of space.
+  void move_as_one(const std::vector<int>& set, Vector& v) const {
+    const auto at = [&](size_t a) { return v.segment<3>(3 * set[a]); };
+    const double arm = (in.X[set[1]] - in.X[set[0]]).norm();
+    const Vec3 move = at(0);
+    Vec3 turn = Vec3::Zero();
+    for (size_t k = 0; k < 3; ++k) turn += Vec3::Unit(static_cast<Index>(k)).cross(Vec3(at(1 + k) - move)) / (2 * arm);
+    for (size_t a = 0; a < set.size(); ++a) at(a) = move + turn.cross(in.X[set[a]] - in.X[set[0]]);
   }
 
   /// Frequencies once more of motions without the stiffest, whose rounding was as large as the softest.
@@ -389,7 +404,7 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   std::vector<Matrix> parts = is_given ? std::vector<Matrix>{in.given} : found_modes(in, cells, flexibility, interfaces.columns, out);
 
   tell("basis");
-  const ModeBasis basis(cells, rigid, M_rigid, interfaces.n_first, !in.points.empty());  // moved alike, all interfaces make a rigid motion
+  const ModeBasis basis(cells, rigid, M_rigid, interfaces.n_first, in);  // moved alike, all interfaces make a rigid motion
   basis.find(parts, out);
   if (in.stiffening && !is_given) {
     tell("modal derivatives");
