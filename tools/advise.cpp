@@ -38,12 +38,16 @@ double tightest(const Scene& scene, const QuantityTolerance& tol) {
   return least;
 }
 
-std::map<size_t, Level> kept_levels(const Options& o, const std::vector<std::string>& regions) {
+std::map<size_t, Level> kept_levels(const Options& o, const Candidates& all) {
+  const std::vector<std::string>& regions = all.names();
   std::map<size_t, Level> out;
   const auto keep = [&](const char* option, const std::string& name, Level level) {
     const auto at = std::find(regions.begin(), regions.end(), name);
     if (at == regions.end()) throw Error(option, fmt::format("no region \"{}\"", name), suggest(name, regions), Exit::usage);
-    if (!out.emplace(static_cast<size_t>(at - regions.begin()), level).second)
+    const auto r = static_cast<size_t>(at - regions.begin());
+    if (all.is_beam(r) && level != Level::linear && level != Level::nonlinear)
+      throw Error(option, fmt::format("beam \"{}\" is linear or nonlinear", name), fmt::format("--keep '{}=linear'", name), Exit::usage);
+    if (!out.emplace(r, level).second)
       throw Error(option, fmt::format("says twice how region \"{}\" is kept", name), "once is enough", Exit::usage);
   };
   for (const std::string& name : o.kept_rigid) keep("--keep-rigid", name, Level::rigid);
@@ -66,13 +70,16 @@ void run(const Options& o) {
   if (o.full && o.no_full) throw Error("--full", "contradicts --no-full", "", Exit::usage);
   for (const std::string& file : {o.apply, o.csv, o.regions})
     if (!file.empty()) check_output(file);
-  Candidates all({o.scene, o.mesh, o.finer, o.work, o.overrides, tol.value, o.at_once});
+  const std::string mesh = o.mesh.empty() ? Scene::load(o.scene, o.overrides).mesh_path() : o.mesh;
+  if (mesh.empty() && !o.finer.empty())
+    throw Error("--finer", "there is no mesh", "hilo-advise scene.toml tags.h5 --finer fine.h5", Exit::usage);
+  Candidates all({o.scene, mesh, o.finer, o.work, o.overrides, tol.value, o.at_once});
   const Entry& time = all.scene().table("time");
   if (time.text("analysis") != "dynamic" || !time.given("step"))
     throw Error(time.place.text(), "only runs in time with a step are advised on", "analysis = \"dynamic\" and step");
   SearchOptions search;
   search.tightest = tightest(all.scene(), tol);
-  search.kept = kept_levels(o, all.names());
+  search.kept = kept_levels(o, all);
   search.check = o.full ? Check::always : o.no_full ? Check::never : Check::where_in_doubt;
   search.at_most = o.at_most;
   search.each_region = !o.regions.empty();
@@ -89,16 +96,17 @@ void run(const Options& o) {
 int main(int argc, char** argv) {
   using namespace hilo;
   return guarded("hilo-advise", [&] {
-    const auto app = make_app(
-        {"hilo-advise",
-         "The cheapest fidelity of each region (rigid, linear, stiffening, nonlinear) that keeps the quantities of a scene to a tolerance.",
-         "hilo-advise scene.toml tags.h5 --tol 2% --apply tags.toml", about()});
+    const auto app = make_app({"hilo-advise",
+                               "The cheapest fidelity of each region (rigid, linear, stiffening, nonlinear) and beam (linear, nonlinear) "
+                               "that keeps the quantities of a "
+                               "scene to a tolerance.",
+                               "hilo-advise scene.toml tags.h5 --tol 2% --apply tags.toml", about()});
     Options o;
     app->add_option("scene", o.scene, "scene file (TOML) with [[quantity]]")->required();
-    app->add_option("mesh", o.mesh, "mesh.h5 or tags.h5; its own tags do not matter")->required();
+    app->add_option("mesh", o.mesh, "mesh.h5 or tags.h5; its own tags do not matter; none of a scene of beams alone");
     app->add_option("--tol", o.tolerance, "tolerance of quantities that say none")->capture_default_str();
     app->add_option("--keep-rigid", o.kept_rigid, "a region that stays rigid (repeatable)")->type_name("NAME")->allow_extra_args(false);
-    app->add_option("--keep", o.kept, "a region that stays as given: rigid, linear, stiffening or nonlinear (repeatable)")
+    app->add_option("--keep", o.kept, "a region or beam that stays as given: rigid, linear, stiffening or nonlinear (repeatable)")
         ->type_name("NAME=LEVEL")
         ->allow_extra_args(false);
     app->add_option("--finer", o.finer, "the same regions in smaller cells: the chosen model runs on it too, for the error of the mesh")

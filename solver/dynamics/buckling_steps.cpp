@@ -247,10 +247,9 @@ class BucklingSteps final : public Steps {
     require_held(system, drawn.q, drawn.t, 1, where);
     system.commit(drawn.q);
     for (const LinearRegion& r : system.part<LinearRegions>().regions)
-      if (!r.strain.used())
-        warn(where,
-             fmt::format("linear region \"{}\" without stiffening = true: its stresses change no stiffness, so factors are too large",
-                         system.bodies[system.modes[static_cast<size_t>(r.modes)].body].name));
+      if (const Modes& m = system.modes[static_cast<size_t>(r.modes)]; !m.stiffens)
+        warn(where, fmt::format("linear region \"{}\": its stresses change no stiffness, so factors are too large ({})",
+                                system.bodies[m.body].name, m.better()));
     run_.audit->start(drawn);
     run_.recorder->first(drawn, run_.audit->ledger());
     Progress progress(run_.options.quiet, 0, time_.number("modes"));

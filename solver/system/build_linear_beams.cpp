@@ -133,7 +133,8 @@ void Builder::add_mean_axes(BeamRegion& region) {
     e.refuse("fidelity", "nothing of this linear beam has inertia about its axis", "inertia of its section, or fidelity = \"nonlinear\"");
   out_->modes_of.resize(out_->bodies.size(), -1);
   out_->modes_of[b] = region.modes;
-  out_->modes.emplace_back().body = b;
+  Modes& modes = out_->modes.emplace_back();
+  modes.body = b, modes.of_beams = true;
 }
 
 Builder::BeamRegion* Builder::beam_region(int number) {
@@ -249,12 +250,21 @@ void Builder::set_sections(const BeamRegion& region, std::span<const double> mot
     s.moves.assign(3 * static_cast<size_t>(modes.n_blocks), Vec3::Zero()), s.turns = s.moves;
     for (int j = 0; j < modes.n_modes; ++j, at += 6) s.moves[j] = Vec3(at[0], at[1], at[2]), s.turns[j] = Vec3(at[3], at[4], at[5]);
   }
+  CarriedBodies& all = beams.carried.emplace_back();
+  all.modes = region.modes;
+  for (const BeamRegion::Place& place : region.places)
+    if (place.carried) all.bodies.push_back(place.body);
+  all.motions.resize(4 * std::ssize(all.bodies), 9 * modes.n_blocks);
+  Eigen::Index row = 0;
   for (const BeamRegion::Place& place : region.places) {
     if (!place.carried) continue;
     const LinearSection& s = beams.sections[place.sections.front()];
-    CarriedBody body{place.body, region.modes, s.moves, s.turns};
-    for (size_t j = 0; j < s.moves.size(); ++j) body.moves[j] += s.turns[j].cross(out_->bodies[place.body].Xc - s.at);
-    beams.carried.push_back(std::move(body));
+    for (size_t j = 0; j < s.moves.size(); ++j) {
+      auto own = all.motions.block<4, 3>(row, 3 * static_cast<Eigen::Index>(j));
+      own.row(0) = s.moves[j] + s.turns[j].cross(out_->bodies[place.body].Xc - s.at);
+      own.bottomRows<3>() = skew(s.turns[j]).transpose();
+    }
+    row += 4;
   }
 }
 
@@ -270,6 +280,23 @@ std::vector<double> Builder::section_motions(const BeamRegion& region, const Eig
       out.insert(out.end(), move.data(), move.data() + 3), out.insert(out.end(), turn.data(), turn.data() + 3);
     }
   return out;
+}
+
+void Builder::start_sections(const std::vector<bool>& body, const Vec3& velocity, const Vec3& spin, const Vec3& about) {
+  for (const BeamRegion& region : beam_regions_)
+    for (const BeamRegion::Place& place : region.places)
+      for (const int s : place.sections)
+        if (body[static_cast<size_t>(place.body)])
+          section_starts_[s] = {velocity + spin.cross(out_->part<LinearBeams>().sections[s].at - about), spin};
+}
+
+void Builder::set_beam_velocities(Config& v) const {
+  const LinearBeams& beams = out_->part<LinearBeams>();
+  std::vector<Vec3> moves(beams.sections.size(), Vec3::Zero()), turns = moves;
+  std::set<int> starts;
+  for (const auto& [s, start] : section_starts_)
+    moves[static_cast<size_t>(s)] = start[0], turns[static_cast<size_t>(s)] = start[1], starts.insert(beams.sections[s].modes);
+  for (const int m : starts) set_velocity(out_->modes[m].body, beams.momenta(m, moves, turns), v);
 }
 
 }  // namespace hilo

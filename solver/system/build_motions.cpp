@@ -7,7 +7,6 @@
 #include <set>
 
 #include "system/builder.hpp"
-#include "system/linear_beams.hpp"
 #include "system/motions.hpp"
 #include "system/welds.hpp"
 
@@ -97,9 +96,6 @@ void Builder::set_initial_velocities() {
   v.resize_like(out_->start);
   std::vector<Vec3> nodal(out_->X.size(), Vec3::Zero());  // of nodes of linear regions
   std::vector<double> by_nodes(out_->bodies.size(), 0);   // linear regions of which an entry names a set
-  const LinearBeams& beams = out_->part<LinearBeams>();
-  std::vector<Vec3> moves(beams.sections.size(), Vec3::Zero()), turns = moves;  // of sections of linear beams
-  std::vector<char> starts(beam_regions_.size(), 0);
   for (const Entry& e : scene_.entries("initial")) {
     std::vector<bool> region(regions_.size(), false), body(out_->bodies.size(), false);
     std::vector<char> node(out_->X.size(), 0);
@@ -148,10 +144,7 @@ void Builder::set_initial_velocities() {
       }
     for (size_t b = 1; b < body.size(); ++b)
       if (body[b]) v.c[b] = velocity + spin.cross(out_->bodies[b].Xc - about), v.R[b] = skew(spin);
-    for (size_t r = 0; r < beam_regions_.size(); ++r)
-      for (const BeamRegion::Place& place : beam_regions_[r].places)
-        for (const int s : place.sections)
-          if (body[place.body]) moves[s] = velocity + spin.cross(beams.sections[s].at - about), turns[s] = spin, starts[r] = 1;
+    start_sections(body, velocity, spin, about);
     for (const Weld& w : out_->part<Welds>().list) {  // what is welded to nodes that move
       if (beam_region(w.modes)) continue;
       const bool stays = std::any_of(w.nodes.begin(), w.nodes.end(), [&](int i) { return node[i] == 0; });
@@ -177,8 +170,7 @@ void Builder::set_initial_velocities() {
   comm_.sum(by_nodes);
   for (size_t b = 1; b < by_nodes.size(); ++b)
     if (by_nodes[b] > 0) set_modal_velocity(static_cast<int>(b), nodal, v);
-  for (size_t r = 0; r < beam_regions_.size(); ++r)
-    if (const int m = beam_regions_[r].modes; starts[r]) set_velocity(out_->modes[m].body, beams.momenta(m, moves, turns), v);
+  set_beam_velocities(v);
   // what is held has none; what moves by a law takes that of its law from the one given here, by an impulse where they differ
   const auto rests = [&](const Body& b) { return b.ground || (b.held && !b.moving); };
   for (size_t b = 0; b < out_->bodies.size(); ++b)

@@ -107,6 +107,9 @@ class Builder {
   void add_load_shapes(const BeamRegion& region, const LineLoad& line, ReductionInput& in) const;
   void set_sections(const BeamRegion& region, std::span<const double> motions);
   std::vector<double> section_motions(const BeamRegion& region, const Eigen::MatrixXd& shapes) const;
+  /// Sections of linear beams that ride on these bodies start to move.
+  void start_sections(const std::vector<bool>& body, const Vec3& velocity, const Vec3& spin, const Vec3& about);
+  void set_beam_velocities(Config& v) const;
   // build_shells.cpp
   void find_shells();
   /// The shape that a cell is taken as, and its nodes in the order of that shape.
@@ -146,6 +149,7 @@ class Builder {
   struct LoadReading;
   void add_loads();
   void drop_spinning_torques();
+  // build_line_loads.cpp
   void add_line_load(const Entry& e, const Load& load);
   // build_mass_loads.cpp
   std::vector<std::int64_t> cells_of(int region) const;
@@ -248,6 +252,7 @@ class Builder {
   std::map<std::string, int> patch_by_name_;
   std::vector<BeamPlan> beam_plans_;
   std::vector<BeamRegion> beam_regions_;
+  std::map<int, std::array<Vec3, 2>> section_starts_;      // velocity and spin of sections of linear beams
   mutable std::set<int> acted_on_;                         // bodies that an entry joins, loads or moves, and does not only look at
   std::vector<std::vector<MortarRow>> mortar_;             // by tie
   std::vector<std::pair<std::string, std::string>> tied_;  // place and label, by tie

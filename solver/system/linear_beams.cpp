@@ -11,7 +11,7 @@ namespace hilo {
 namespace {
 
 using Eigen::Index;
-using Mat12 = Eigen::Matrix<double, 12, 12>;
+using Strains = Eigen::Matrix<double, 6, 12>;
 
 Vec3 vec3(const BeamVector& v) { return Vec3(v[0], v[1], v[2]); }
 
@@ -30,18 +30,27 @@ arc::SectionPoints<double> drawn(const BeamCell& cell, const Vec3& a, const Vec3
   return out;
 }
 
-/// The slope of forces and moments by the motion of both sections, without strain.
-Mat12 stiffness_of(const BeamCell& cell, const arc::SectionPoints<double>& at) {
-  arc::Resultants<double> r;
-  double s[arc::n_measures], D[arc::n_measures][arc::n_measures];
+/// Slopes of the strains of a cell without stress by the motion of both sections, scaled so that their squares sum to twice its energy.
+Strains strains_of(const BeamCell& cell, const arc::SectionPoints<double>& at) {
   const arc::Measures<double> m = arc::measures_of(at.y);
-  arc::respond(cell.arc.law, m, m, 1, 0., static_cast<const double*>(nullptr), static_cast<const double*>(nullptr), r, s, D);
+  const ArcStrain drawn = arc_strain(m);
   arc::Gradient<double> g;
   arc::gradient(at, at, g);
-  double K[144] = {};
-  arc::add_stiffness(D, 2, g, g, K);  // D is the slope of a mean over a step by one of its ends
-  const Mat12 out = Eigen::Map<const Mat12>(K);
-  return (out + out.transpose()) / 2;
+  Strains slopes;
+  for (int c = 0; c < 12; ++c) {
+    const int end = c / 6, k = c % 3;
+    arc::Measures<double> dm{};
+    for (int i = 0; i < 3; ++i) {
+      if (c % 6 < 3) dm.p[i] = (end == 0 ? -1 : 1) * g.way[i][k];
+      if (c % 6 >= 3) dm.a[i] = g.turn[i][end][k], dm.p[i] = g.turn[4 + i][end][k];
+    }
+    if (c % 6 >= 3) dm.t = g.turn[3][end][k];
+    ArcStrain x;
+    arc::strain_ahead(m, dm, x.data());
+    slopes.col(c) = x - drawn;
+  }
+  using Matrix = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  return Eigen::Map<const Matrix>(&cell.arc.law.C[0][0]).llt().matrixU() * slopes / std::sqrt(cell.arc.law.length);
 }
 
 /// Motions of sections of those of their nodes.
@@ -91,7 +100,7 @@ void LinearBeams::add_cell(const SectionPlace& a, const SectionPlace& b, const S
   rest.c = {a.at, b.at}, rest.R.assign(2, Mat3::Identity());
   BeamCell cell = beam_cell({a.at, a.frame, 0}, {b.at, b.frame, 1}, rest, sections, beta, alpha);
   cell.body = {a.body, b.body};
-  stiffness_.push_back(stiffness_of(cell, drawn(cell, a.at, b.at)));
+  strains_.push_back(strains_of(cell, drawn(cell, a.at, b.at)));
   cells.push_back(std::move(cell));
 }
 
@@ -114,7 +123,7 @@ PointCell LinearBeams::point_cell(size_t k, double arm) const {
   PointCell out;
   for (int i = 0; i < 4; ++i) out.nodes[i] = a.node + i, out.nodes[4 + i] = b.node + i;
   const auto ends = sections_of_nodes(arm);
-  out.stiffness = ends.transpose() * stiffness_[k] * ends;
+  out.strains = strains_[k] * ends;
   double M[8][8] = {};
   arc::add_mass(cell.arc, 1., M);
   const Eigen::Matrix<double, 8, 8> T = points_of_nodes(k, arm);
@@ -122,7 +131,8 @@ PointCell LinearBeams::point_cell(size_t k, double arm) const {
   out.beta = cell.arc.beta, out.alpha = cell.arc.alpha, out.length = cell.arc.law.length;
   const Vec3 along = (b.at - a.at).normalized();
   const double way = (b.at - a.at).norm();
-  const Eigen::Matrix<double, 3, 24> n = (stiffness_[k] * ends).middleRows(6, 3), moved = ends.middleRows(6, 3) - ends.topRows(3),
+  const Eigen::Matrix<double, 3, 24> n = strains_[k].middleCols<3>(6).transpose() * out.strains,
+                                     moved = ends.middleRows(6, 3) - ends.topRows(3),
                                      turn = (ends.middleRows(3, 3) + ends.middleRows(9, 3)) / 2;
   const Eigen::Matrix<double, 1, 24> pull = along.transpose() * n;
   for (int c = 0; c < 3; ++c) {  // n e + e n - (n.e) e e
@@ -180,10 +190,10 @@ std::vector<double> LinearBeams::momenta(int modes, const std::vector<Vec3>& vel
     arc::SectionPoints<double> V;
     arc::points_of(cell.arc, rates, V);
     const auto P = momenta_of(cell, V);
-    const auto y = drawn(cell, sections[cell.body[0]].at, sections[cell.body[1]].at).y;
+    const arc::SectionPoints<double> x = drawn(cell, sections[cell.body[0]].at, sections[cell.body[1]].at);
     for (int i = 0; i < 8; ++i) {
       const LinearSection& s = sections[cell.body[i / 4]];
-      const Vec3 p = vec3(P[i]), at = vec3(y[i]);
+      const Vec3 p = vec3(P[i]), at = vec3(x.y[i]);
       if (i % 4 == 0) add(0, p);
       add(3, (i % 4 == 0 ? Vec3(at - points_.bodies[m.body].Xc) : at).cross(p));
       for (size_t j = 0; j < s.moves.size(); ++j) sum[6 + j] += (i % 4 == 0 ? s.moves[j] : Vec3(s.turns[j].cross(at))).dot(p);
@@ -193,12 +203,16 @@ std::vector<double> LinearBeams::momenta(int modes, const std::vector<Vec3>& vel
 }
 
 void LinearBeams::carry(Config& q) const {
-  for (const CarriedBody& b : carried) {
-    const Modes& m = points_.modes[b.modes];
-    q.c[b.body] = q.c[m.body] + q.R[m.body] * (points_.bodies[b.body].Xc - points_.bodies[m.body].Xc), q.R[b.body] = q.R[m.body];
-    for (size_t j = 0; j < b.moves.size(); ++j) {
-      const Mat3& Y = q.Y[3 * m.first + static_cast<int>(j)];
-      q.c[b.body] += Y * b.moves[j], q.R[b.body] += Y * skew(b.turns[j]);
+  for (const CarriedBodies& of : carried) {
+    const Modes& m = points_.modes[of.modes];
+    Eigen::Matrix<double, Eigen::Dynamic, 3> Y(of.motions.cols(), 3);
+    for (Index j = 0; j < Y.rows(); j += 3) Y.middleRows<3>(j) = q.Y[static_cast<size_t>(3 * m.first + j / 3)].transpose();
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> moved = of.motions * Y;
+    for (size_t k = 0; k < of.bodies.size(); ++k) {
+      const int b = of.bodies[k];
+      const auto own = moved.middleRows<4>(4 * static_cast<Index>(k));
+      q.c[b] = q.c[m.body] + q.R[m.body] * (points_.bodies[b].Xc - points_.bodies[m.body].Xc) + own.row(0).transpose();
+      q.R[b] = q.R[m.body] + own.bottomRows<3>().transpose();
     }
   }
 }
@@ -260,7 +274,8 @@ void LinearBeams::add_work(const Moment& m, Work& sum) const {
 }
 
 void LinearBeams::tie(Ties& ties) const {
-  for (const CarriedBody& b : carried) ties.exclude(b.body);
+  for (const CarriedBodies& of : carried)
+    for (const int b : of.bodies) ties.exclude(b);
 }
 
 std::vector<Output> LinearBeams::outputs() const {
@@ -279,7 +294,7 @@ void LinearBeams::observe(const Sight& sight) {
     const BeamCell& cell = cells[k];
     const int modes = sections[cell.body[0]].modes;
     const auto& [elastic, rate] = by_modes[modes];
-    Eigen::Matrix<double, 12, 1> f = stiffness_[k] * ends_of(cell, elastic + cell.arc.beta * rate);
+    Eigen::Matrix<double, 12, 1> f = strains_[k].transpose() * (strains_[k] * ends_of(cell, elastic + cell.arc.beta * rate));
     arc::SectionPoints<double> rates = points_of(cell, *s.a);
     for (const int c : {0, 4})
       for (int i = 0; i < 3; ++i) rates.y[c][i] -= s.load_factor * points_.gravity[i];

@@ -22,10 +22,11 @@ struct LinearSection {
   std::vector<Vec3> moves, turns;  // by each amplitude (3 n_blocks) [m, rad]
 };
 
-/// A body that a linear region moves by its modes, to small turns: its directors stay orthonormal to the first power of the amplitudes.
-struct CarriedBody {
-  int body = -1, modes = -1;
-  std::vector<Vec3> moves, turns;  // by each amplitude, axes of the region (3 n_blocks) [m, rad]
+/// Bodies that a linear region moves by its modes, to small turns: directors stay orthonormal to the first power of the amplitudes.
+struct CarriedBodies {
+  int modes = -1;
+  std::vector<int> bodies;
+  Eigen::MatrixXd motions;  // displacement and the three columns of the turn of each body by each Y, axes of the region (4 n x 9 n_blocks)
 };
 
 class LinearBeams final : public Contribution, public Equations, public Observer {
@@ -35,7 +36,7 @@ class LinearBeams final : public Contribution, public Equations, public Observer
   std::vector<BeamCell> cells;  // between sections of this list:
   std::vector<LineLoad> lines;
   std::vector<LinearSection> sections;
-  std::vector<CarriedBody> carried;
+  std::vector<CarriedBodies> carried;
   /// Carried bodies from their regions: the map is linear, for positions, velocities and accelerations alike.
   void carry(Config& q) const;
   void add_cell(const SectionPlace& a, const SectionPlace& b, const SectionsAlong& sections, double beta, double alpha);
@@ -55,12 +56,11 @@ class LinearBeams final : public Contribution, public Equations, public Observer
   void observe(const Sight& at) override;
 
  private:
-  using Mat12 = Eigen::Matrix<double, 12, 12>;
   arc::SectionPoints<double> points_of(const BeamCell& cell, const Config& q) const;
   /// Displacement and turn of both ends by amplitudes (12).
   Eigen::Matrix<double, 12, 1> ends_of(const BeamCell& cell, const Eigen::VectorXd& eta) const;
   const Points& points_;
-  std::vector<Mat12> stiffness_;  // of cells, by displacement and turn of A, of B
+  std::vector<Eigen::Matrix<double, 6, 12>> strains_;  // of cells, by displacement and turn of A, of B: (N/m)^1/2, as PointCell has them
 };
 
 }  // namespace hilo

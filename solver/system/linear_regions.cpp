@@ -228,23 +228,19 @@ void LinearRegions::commit(const Config& q, const Config* v) {
     of_run_[k].bend = std::max(of_run_[k].bend, most);
     if (most > bend_limit(k))
       tell(2, fmt::format("bends by {:.2g} of its length: {}", most,
-                          m.stiffens
-                              ? "beyond 0.05 modes with stiffening are off by more than a few per cent (tag it nonlinear)"
-                              : "beyond 0.0125 linear modes are off by more than a few per cent (stiffening = true is good for four times "
-                                "as much, or tag it nonlinear)"));
+                          m.stiffens ? "beyond 0.05 modes with stiffening are off by more than a few per cent (tag it nonlinear)"
+                                     : fmt::format("beyond 0.0125 linear modes are off by more than a few per cent ({}{})",
+                                                   m.of_beams ? "" : "stiffening is good for four times as much: ", m.better())));
     if (m.stiffens || !v) continue;
     const Mat3 S = v->R[m.body] * q.R[m.body].transpose();
     const double spin = Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)).norm() / 2, first = std::sqrt(r.stiffness[0]);
     of_run_[k].spin = std::max(of_run_[k].spin, spin / first);
     if (spin >= first)
-      too_fast_ = fmt::format(
-          "linear region \"{}\" spins with {:.3g} rad/s, its first frequency is {:.3g} rad/s: give it stiffening = true or tag it "
-          "nonlinear",
-          name, spin, first);
+      too_fast_ = fmt::format("linear region \"{}\" spins with {:.3g} rad/s, its first frequency is {:.3g} rad/s: {}", name, spin, first,
+                              m.better());
     if (spin >= spin_limit * first)
-      tell(1, fmt::format("spins with {:.3g} rad/s, a share of {:.2g} of its first frequency: linear strains do not stiffen (stiffening = "
-                          "true does, or tag it nonlinear)",
-                          spin, spin / first));
+      tell(1, fmt::format("spins with {:.3g} rad/s, a share of {:.2g} of its first frequency: linear strains do not stiffen ({})", spin,
+                          spin / first, m.better()));
   }
 }
 

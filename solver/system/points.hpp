@@ -38,9 +38,14 @@ struct Modes {
   int first = 0, n_blocks = 0;  // amplitudes in Config::eta, three to a block; those beyond n_modes stay zero
   int n_modes = 0;              //
   bool stiffens = false;        // with strains of the second degree (system/quadratic_strain.hpp)
+  bool of_beams = false;        // and of no cells of a mesh
   int block = -1;               // of the amplitudes
   int clique = -1;              // of body and amplitudes, whose body has blocks -1 where it is driven
   std::vector<double> lever;    // metres that a unit of the amplitudes of a block is
+  /// What to write in a scene where they do not serve.
+  const char* better() const {
+    return of_beams ? "fidelity = \"nonlinear\"" : stiffens ? "tag it nonlinear" : "stiffening = true, or tag it nonlinear";
+  }
 };
 
 /// A kind of unknowns: things with a block of three each.  What solves and steps loops over these fields and names no node and no body.

@@ -73,7 +73,7 @@ ReductionKey key_of(const ReductionInput& in) {
   for (const PointCell& c : in.points) {
     cells += of_nodes(c.nodes);
     Digest own;
-    for (const double x : c.stiffness.reshaped()) own.add(x);
+    for (const double x : c.strains.reshaped()) own.add(x);
     for (const double x : c.mass.reshaped()) own.add(x);
     materials += own.add(c.beta).add(c.alpha).value();
   }

@@ -53,8 +53,6 @@ using Vector = Eigen::VectorXd;
 constexpr Index n_bending = 6;        // soft modes, lowest first, that derivatives are made of,
 constexpr Index n_held = 4;           // and the vibrations between interfaces that they come from
 constexpr Index most_stiffened = 60;  // modes of a region whose products are kept
-constexpr double stiffest = 1e9;      // squared frequency of modes of beams over the first one
-constexpr double widest = 1e8;        // between squared frequencies of vibrations: stiffer ones would cost the softest its digits
 
 Matrix rigid_motions(const std::vector<Vec3>& X, const Vec3& about) {
   Matrix out = Matrix::Zero(3 * static_cast<Index>(X.size()), 6);
@@ -194,9 +192,7 @@ Matrix vibrations(const ReductionInput& in, const RegionCells& cells, const Flex
     const Vector& lambda = found.omega2;
     Index keep = 0;
     const double limit = std::pow(2 * std::numbers::pi * in.up_to, 2);
-    while (keep < std::min<Index>(wanted, lambda.size()) && (in.up_to == 0 || keep < 4 || lambda[keep] <= limit) &&
-           lambda[keep] <= widest * lambda[0])
-      ++keep;
+    while (keep < std::min<Index>(wanted, lambda.size()) && (in.up_to == 0 || keep < 4 || lambda[keep] <= limit)) ++keep;
     if (keep == wanted && wanted < std::min(in.n_vibrations, most)) {
       wanted = std::min(2 * wanted, std::min(in.n_vibrations, most));
       continue;
@@ -241,68 +237,51 @@ struct ModeBasis {
     for (Index k = 0; k < V.cols(); ++k)
       if (after[k] > 1e-8 * before[k] && after[k] > 0)
         V.col(kept) = (V.col(k) / after[k]).eval(), MV.col(kept) = (MV.col(k) / after[k]).eval(), ++kept;
-    if (!in.points.empty()) kept = separate(V, MV, kept);
     V.conservativeResize(Eigen::NoChange, kept), MV.conservativeResize(Eigen::NoChange, kept);
-    const Matrix G = transposed_times(V, MV);
-    const Eigen::SelfAdjointEigenSolver<Matrix> gram(G);
-    Index skip = 0;
-    while (skip < kept && gram.eigenvalues()[skip] < 1e-9 * gram.eigenvalues()[kept - 1]) ++skip;
-    const Index m = kept - skip;
-    V = product(V, gram.eigenvectors().rightCols(m) * gram.eigenvalues().tail(m).cwiseSqrt().cwiseInverse().asDiagonal());
-    add_product(-1, rigid, transposed_times(M_rigid, V), V);
+    in.points.empty() ? by_mass(std::move(V), MV, out) : by_energy(std::move(V), MV, out);
+    add_product(-1, rigid, transposed_times(M_rigid, out.shapes), out.shapes);
+    check(out);
+  }
+
+  void by_mass(Matrix V, const Matrix& MV, Reduction& out) const {
+    V = cut(V, transposed_times(V, MV), 1e-9);
     const Matrix Kr = transposed_times(V, cells.times(RegionCells::stiffness, V)), Mr = transposed_times(V, cells.times_mass(V));
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes((Kr + Kr.transpose()) / 2, (Mr + Mr.transpose()) / 2);
     out.omega2 = modes.eigenvalues();
-    if (!in.points.empty() && m > 0 && out.omega2[0] > 0 && out.omega2[m - 1] > stiffest * out.omega2[0]) {
-      Index soft = 0;
-      while (out.omega2[soft] <= stiffest * out.omega2[0]) ++soft;
-      return find_again(product(V, modes.eigenvectors().leftCols(soft)), out);
-    }
-    if (m > 0 && !(out.omega2[0] > 1e-12 * out.omega2[m - 1]))
+    if (V.cols() > 0 && !(out.omega2[0] > 1e-12 * out.omega2[V.cols() - 1]))
       throw Error("", "the cells of the region do not hold together", "one piece, with no hinges of single nodes");
     out.shapes = product(V, modes.eigenvectors());
-    check(out);
   }
 
-  /// Of beams stretch is so much stiffer than bending that small parts of a motion bear much of the load.  Each of the first `n` columns
-  /// less those before it: those of which something is left come first, their number is returned.
-  Index separate(Matrix& V, Matrix& MV, Index n) const {
-    constexpr double least = 1e-5;  // of the column; less is rounding of those that are all but in the span of others
-    Index kept = 0;
-    for (Index k = 0; k < n; ++k) {
-      Vector v = V.col(k), Mv = MV.col(k);
-      for (int pass = 0; pass < 2; ++pass) {
-        const Vector share = MV.leftCols(kept).transpose() * v;
-        v -= V.leftCols(kept) * share;
-        v -= rigid * Vector(M_rigid.transpose() * v);
-        for (const auto* sets : {&in.rigid, &in.blocks})
-          for (const auto& set : *sets) move_as_one(set, v);
-        Mv = cells.times_mass(v);
-      }
-      const double left = std::sqrt(std::max(0.0, v.dot(Mv)));
-      if (left < least) continue;
-      V.col(kept) = v / left, MV.col(kept) = Mv / left, ++kept;
-    }
-    return kept;
+  /// Of slender beams, whose stretch is 1e8 times as stiff as their bending: in the norm of mass the stretch of an answer would be lost in
+  /// rounding of its bending, in that of K + w2 M, w2 a squared frequency of the softest, it is not.  In this norm masses are 1/(w^2 + w2).
+  void by_energy(Matrix V, const Matrix& MV, Reduction& out) const {
+    const Matrix KV = cells.times(RegionCells::stiffness, V);
+    const Vector stiff = V.cwiseProduct(KV).colwise().sum().transpose();
+    const double w2 = V.cols() > 0 ? stiff.minCoeff() : 0;
+    const auto scale = (stiff.array() + w2).rsqrt().matrix().asDiagonal();
+    V = cut(V * scale, scale * (transposed_times(V, KV) + w2 * transposed_times(V, MV)) * scale, 1e-11);
+    V = orthonormal(V, transposed_times(V, cells.times(RegionCells::stiffness, V)) + w2 * transposed_times(V, cells.times_mass(V)));
+    const Matrix Mr = transposed_times(V, cells.times_mass(V));
+    const Eigen::SelfAdjointEigenSolver<Matrix> masses((Mr + Mr.transpose()) / 2);
+    const Matrix y = masses.eigenvectors() * masses.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal();
+    Matrix& U = out.shapes = product(V, y.rowwise().reverse());  // softest first
+    U = orthonormal(U, transposed_times(U, cells.times_mass(U)));
+    out.omega2 = U.cwiseProduct(cells.times(RegionCells::stiffness, U)).colwise().sum().transpose();
   }
 
-  /// Nodes of sections of beams without what rounding makes of them: by the first four, which stand along the axes of space.
-  void move_as_one(const std::vector<int>& set, Vector& v) const {
-    const auto at = [&](size_t a) { return v.segment<3>(3 * set[a]); };
-    const double arm = (in.X[set[1]] - in.X[set[0]]).norm();
-    const Vec3 move = at(0);
-    Vec3 turn = Vec3::Zero();
-    for (size_t k = 0; k < 3; ++k) turn += Vec3::Unit(static_cast<Index>(k)).cross(Vec3(at(1 + k) - move)) / (2 * arm);
-    for (size_t a = 0; a < set.size(); ++a) at(a) = move + turn.cross(in.X[set[a]] - in.X[set[0]]);
-  }
+  /// Once more, where rounding has left G all but one: each column less those before it.
+  static Matrix orthonormal(const Matrix& V, const Matrix& G) { return G.llt().matrixU().solve<Eigen::OnTheRight>(V); }
 
-  /// Frequencies once more of motions without the stiffest, whose rounding was as large as the softest.
-  void find_again(const Matrix& shapes, Reduction& out) const {
-    const Matrix Kr = transposed_times(shapes, cells.times(RegionCells::stiffness, shapes)),
-                 Mr = transposed_times(shapes, cells.times_mass(shapes));
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes((Kr + Kr.transpose()) / 2, (Mr + Mr.transpose()) / 2);
-    out.omega2 = modes.eigenvalues(), out.shapes = product(shapes, modes.eigenvectors());
-    check(out);
+  /// Combinations of V that are orthonormal in the norm that G is of, without those of a length below `least` of the largest.
+  Matrix cut(const Matrix& V, const Matrix& G, double least) const {
+    const Eigen::SelfAdjointEigenSolver<Matrix> gram((G + G.transpose()) / 2);
+    Index skip = 0;
+    while (skip < V.cols() && gram.eigenvalues()[skip] < least * gram.eigenvalues()[V.cols() - 1]) ++skip;
+    const Index m = V.cols() - skip;
+    Matrix out = product(V, gram.eigenvectors().rightCols(m) * gram.eigenvalues().tail(m).cwiseSqrt().cwiseInverse().asDiagonal());
+    add_product(-1, rigid, transposed_times(M_rigid, out), out);
+    return out;
   }
 
   /// Modes are orthogonal in mass and stiffness, or the answers that they come from were wrong.

@@ -37,14 +37,22 @@ MatrixXd RegionCells::times_mass(const MatrixXd& V) const {
 
 MatrixXd RegionCells::times(Kind kind, const MatrixXd& V, const VectorXd* u) const {
   MatrixXd out = MatrixXd::Zero(V.rows(), V.cols()), local, product;
-  each(
+  const auto add = [&](std::span<const int> nodes) {
+    for (size_t a = 0; a < nodes.size(); ++a) out.middleRows(3 * nodes[a], 3) += product.middleRows(3 * static_cast<Index>(a), 3);
+  };
+  each_solid(
       kind,
       [&](std::span<const int> nodes, const double* Ke) {
         gather(V, nodes, local);
         product.noalias() = CellMatrix(Ke, local.rows(), local.rows()) * local;
-        for (size_t a = 0; a < nodes.size(); ++a) out.middleRows(3 * nodes[a], 3) += product.middleRows(3 * static_cast<Index>(a), 3);
+        add(nodes);
       },
       u);
+  for (const PointCell& c : points_) {  // by their strains
+    gather(V, c.nodes, local);
+    product.noalias() = (kind == damping_by_stiffness ? c.beta : 1) * c.strains.transpose() * (c.strains * local).eval();
+    add(c.nodes);
+  }
   return out;
 }
 

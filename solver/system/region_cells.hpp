@@ -20,7 +20,20 @@ class RegionCells {
   /// Visit nodes and matrix (3n x 3n, row major) of each cell; the stiffness is the slope of the force at the displacements u (3 n_nodes),
   /// or at rest.
   template <class Visit>
-  void each(Kind kind, Visit&& visit, const Eigen::VectorXd* u = nullptr) const {
+  void each(Kind kind, const Visit& visit, const Eigen::VectorXd* u = nullptr) const {
+    each_solid(kind, visit, u);
+    const bool of_mass = kind == mass || kind == damping_by_mass;
+    for (const PointCell& c : points_) {
+      const double factor = kind == damping_by_stiffness ? c.beta : kind == damping_by_mass ? c.alpha : 1;
+      Eigen::Matrix<double, 24, 24> K = Eigen::Matrix<double, 24, 24>::Zero();
+      if (!of_mass) K = factor * c.strains.transpose() * c.strains;
+      for (int a = 0; a < 8 && of_mass; ++a)
+        for (int b = 0; b < 8; ++b) K.block<3, 3>(3 * a, 3 * b).diagonal().setConstant(factor * c.mass(a, b));
+      visit(std::span<const int>(c.nodes), K.data());
+    }
+  }
+  template <class Visit>
+  void each_solid(Kind kind, const Visit& visit, const Eigen::VectorXd* u = nullptr) const {
     const bool of_mass = kind == mass || kind == damping_by_mass;
     struct alignas(64) Line {  // as the widest kernels load them
       double value[8] = {};
@@ -54,16 +67,6 @@ class RegionCells {
           visit(std::span<const int>(b.nodes.data() + static_cast<size_t>(first + l) * n, static_cast<size_t>(n)), Ke.data());
         }
       }
-    }
-    for (const PointCell& c : points_) {
-      const double factor = kind == damping_by_stiffness ? c.beta : kind == damping_by_mass ? c.alpha : 1;
-      Eigen::Matrix<double, 24, 24> K = factor * c.stiffness;
-      if (of_mass) {
-        K.setZero();
-        for (int a = 0; a < 8; ++a)
-          for (int b = 0; b < 8; ++b) K.block<3, 3>(3 * a, 3 * b).diagonal().setConstant(factor * c.mass(a, b));
-      }
-      visit(std::span<const int>(c.nodes), K.data());
     }
   }
   /// A mass matrix, the same in every direction (n_nodes x n_nodes).

@@ -236,24 +236,22 @@ void RegionMeasures::add_to_report(Json& run) const {
     if (quadratic > much_quadratic)
       leaves("quadratic_strain", quadratic, much_quadratic, r.quadratic.t,
              fmt::format("its supports stretch it as it bends: strains of the second degree are {:.2g} of its strain (norm of energy) at t "
-                         "= {:.4g} s, and linear ones leave them out (stiffening = true, or tag it nonlinear)",
-                         quadratic, r.quadratic.t));
+                         "= {:.4g} s, and linear ones leave them out ({})",
+                         quadratic, r.quadratic.t, m.better()));
     if (r.growth.value > much_growth)
       leaves("buckling", r.growth.value, much_growth, r.share.t,
-             fmt::format("bears {:.2g} of its buckling load at t = {:.4g} s: linear strains leave out that it gives way {} (stiffening = "
-                         "true, or tag it nonlinear)",
-                         share, r.share.t, share < 1 ? fmt::format("{:.3g} times as far", r.growth.value) : "without end"));
+             fmt::format("bears {:.2g} of its buckling load at t = {:.4g} s: linear strains leave out that it gives way {} ({})", share,
+                         r.share.t, share < 1 ? fmt::format("{:.3g} times as far", r.growth.value) : "without end", m.better()));
     if (r.tension.value > much_growth)
       leaves("tension", r.tension.value, much_growth, r.tension.t,
              fmt::format("is pulled: linear strains leave out that this stiffens it, so that it bends {:.3g} times as far, at t = "
-                         "{:.4g} s (stiffening = true, or tag it nonlinear)",
-                         r.tension.value, r.tension.t));
+                         "{:.4g} s ({})",
+                         r.tension.value, r.tension.t, m.better()));
     if (shortening > much_shortening)
       leaves("shortening", shortening, much_shortening, r.shortening.t,
              fmt::format("bends so fast that its ends come nearer with {:.3g} m/s^2 at t = {:.4g} s, {:.2g} of its largest acceleration: "
-                         "linear strains leave this out, and the forces along it that this asks for (stiffening = true, or tag it "
-                         "nonlinear)",
-                         r.shortening.value, r.shortening.t, shortening));
+                         "linear strains leave this out, and the forces along it that this asks for ({})",
+                         r.shortening.value, r.shortening.t, shortening, m.better()));
   }
   if (regions_.empty()) return;
   constexpr size_t shown = 3;  // regions of one measure, the worst ones

@@ -98,11 +98,11 @@ void System::reduce(Pass& p) const {
     if (const auto shapes = shapes_at(static_cast<int>(i)); !shapes.empty()) of_modes[modes_of[b]].add(shapes, r);
   }
   for (ModeForces& m : of_modes) m.finish();
-  const auto none = std::vector<CarriedBody>{};
-  for (const CarriedBody& b : modes.empty() ? none : part<LinearBeams>().carried)
-    if (!p.body[b.body].isZero(0))
-      throw Error("",
-                  fmt::format("something acts on section \"{}\" of a linear beam that no entry of the scene names", bodies[b.body].name));
+  const auto none = std::vector<CarriedBodies>{};
+  for (const CarriedBodies& of : modes.empty() ? none : part<LinearBeams>().carried)
+    for (const int b : of.bodies)
+      if (!p.body[b].isZero(0))
+        throw Error("", fmt::format("something acts on section \"{}\" of a linear beam that no entry of the scene names", bodies[b].name));
   for (size_t b = 0; b < bodies.size(); ++b) {
     if (body_block[b] < 0) continue;
     for (int k = 0; k < 6; ++k) p.out.r[3 * body_block[b] + k] += p.body[b][k];

@@ -255,8 +255,7 @@ void Welds::commit(const Config& q, const Config*) {
     if (points_.comm->rank == 0 && !regions.contains(list[k].modes) && regions.size() < named)
       warn(points_.bodies[m.body].name,
            fmt::format("turns by {:.2g} rad at \"{}\": beyond {:g} {} are off by more than a few per cent ({})", turn, list[k].name, limit,
-                       m.stiffens ? "modes with stiffening" : "linear modes",
-                       m.stiffens ? "tag it nonlinear" : "give it stiffening = true or tag it nonlinear"));
+                       m.stiffens ? "modes with stiffening" : "linear modes", m.better()));
   }
 }
 

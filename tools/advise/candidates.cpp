@@ -37,8 +37,10 @@ bool is_complete(const std::string& name) {
   return j.is_object() && j.contains("complete") && j["complete"] == true && std::filesystem::exists(name + ".h5");
 }
 
-/// Bodies of several regions are named by all of them, with + between.
-bool is_of(const std::string& body, const std::string& region) { return ("+" + body + "+").find("+" + region + "+") != std::string::npos; }
+/// Bodies of several regions are named by all of them, with + between; of many beams by some, and all may be among "+5 more".
+bool is_of(const std::string& body, const std::string& region) {
+  return ("+" + body + "+").find("+" + region + "+") != std::string::npos || body.ends_with(" more");
+}
 
 std::string last_line(const std::string& path) {
   std::ifstream file(path);
@@ -64,11 +66,23 @@ constexpr Measure measures[] = {{"bend", [](double v) { return 0.03 * std::pow(v
 }  // namespace
 
 Candidates::Candidates(Options options)
-    : o_(std::move(options)), scene_(Scene::load(o_.scene, o_.overrides)), mesh_(read_mesh_file(o_.mesh)), mesh_digest_(digest(o_.mesh)) {
+    : o_(std::move(options)),
+      scene_(Scene::load(o_.scene, o_.overrides)),
+      mesh_(o_.mesh.empty() ? MeshFile() : read_mesh_file(o_.mesh)),
+      mesh_digest_(o_.mesh.empty() ? "" : digest(o_.mesh)),
+      names_(mesh().region_name) {
   check_quantity_regions(scene_, names());
+  for (const std::string& name : names()) nodes_.push_back(static_cast<double>(mesh().nodes_of(name, o_.mesh).size()));
+  for (const Entry& e : scene_.entries("beam")) {
+    double sections = 1;
+    for (const double cells : e.numbers("cells")) sections += cells;
+    names_.push_back(e.name), nodes_.push_back(2 * sections);
+  }
+  if (names().empty()) throw Error(scene_.path, "has neither a mesh nor beams to advise on", "hilo-advise scene.toml tags.h5", Exit::usage);
   if (!o_.finer.empty()) {
     const MeshFile finer = read_mesh_file(o_.finer);
-    if (finer.mesh.region_name != names()) throw Error(o_.finer, "has other regions than " + o_.mesh, "the same model with smaller cells");
+    if (finer.mesh.region_name != mesh().region_name)
+      throw Error(o_.finer, "has other regions than " + o_.mesh, "the same model with smaller cells");
     refinement_ = std::cbrt(static_cast<double>(finer.mesh.n_cells()) / static_cast<double>(mesh().n_cells()));
     if (refinement_ < 1.2)
       throw Error(o_.finer, fmt::format("its cells are {:.3g} times as small: too near to estimate the error of the mesh", refinement_),
@@ -79,8 +93,8 @@ Candidates::Candidates(Options options)
   std::filesystem::create_directories(o_.folder + "/modes", failed);
   if (failed) throw Error(o_.folder, "cannot make the folder: " + failed.message(), "--work FOLDER", Exit::resources);
   std::vector<std::vector<std::int64_t>> nodes;
-  for (const std::string& name : names()) nodes.push_back(mesh().nodes_of(name, o_.mesh)), nodes_.push_back(nodes.back().size());
-  neighbours_.resize(nodes.size());
+  for (const std::string& name : mesh().region_name) nodes.push_back(mesh().nodes_of(name, o_.mesh));
+  neighbours_.resize(names().size());
   std::vector<std::int64_t> shared;
   for (size_t r = 0; r < nodes.size(); ++r)
     for (size_t s = 0; s < nodes.size(); ++s) {
@@ -90,7 +104,11 @@ Candidates::Candidates(Options options)
     }
 }
 
+std::string Candidates::table(size_t r) const { return fmt::format("{}.\"{}\"", is_beam(r) ? "beam" : "region", names()[r]); }
+
 Assignment Candidates::consistent(Assignment levels) const {
+  for (size_t r = 0; r < levels.size(); ++r)
+    if (is_beam(r) && levels[r] != Level::nonlinear) levels[r] = Level::linear;
   for (bool more = true; more;) {
     more = false;
     for (size_t r = 0; r < levels.size(); ++r)
@@ -114,12 +132,15 @@ Candidates::Job Candidates::job(const Request& request) const {
   else if (request.end > 0 && !scene_.table("output").given("interval"))
     more.push_back(fmt::format("output.interval={:.17g}", end / 50));
   for (size_t r = 0; r < request.levels.size(); ++r)
-    if (request.levels[r] == Level::stiffening) more.push_back(fmt::format("region.\"{}\".stiffening=true", names()[r]));
+    if (is_beam(r))
+      more.push_back(fmt::format("{}.fidelity=\"{}\"", table(r), word(request.levels[r])));
+    else if (request.levels[r] == Level::stiffening)
+      more.push_back(table(r) + ".stiffening=true");
   for (size_t r = 0; r < request.levels.size() && (request.modes != 1 || request.step != 1); ++r) {
     if (fidelity(request.levels[r]) != Fidelity::linear) continue;
     const Modes m = modes_of(r, request.modes);  // with half the step the same modes
-    more.push_back(fmt::format("region.\"{}\".up_to={:.17g}", names()[r], m.up_to));
-    if (request.modes != 1) more.push_back(fmt::format("region.\"{}\".modes={}", names()[r], m.most));
+    more.push_back(fmt::format("{}.up_to={:.17g}", table(r), m.up_to));
+    if (request.modes != 1) more.push_back(fmt::format("{}.modes={}", table(r), m.most));
   }
   Digest key;
   key.add(about()).add(request.finer ? finer_digest_ : mesh_digest_);  // another hilo may compute otherwise
@@ -128,7 +149,9 @@ Candidates::Job Candidates::job(const Request& request) const {
   for (const Level l : request.levels) key.add(word(l));
   for (const std::string& m : more) key.add(m);
   Job job{fmt::format("{}/{:016x}", o_.folder, key.value()), {}};
-  job.command = {solver(), "--quiet", o_.scene, job.name + "-tags.h5", "-o", job.name + ".h5", "--checkpoint", "none"};
+  job.command = {solver(), "--quiet", o_.scene};
+  if (!o_.mesh.empty()) job.command.push_back(job.name + "-tags.h5");
+  job.command.insert(job.command.end(), {"-o", job.name + ".h5", "--checkpoint", "none"});
   const bool has_modes = std::any_of(request.levels.begin(), request.levels.end(), [](Level l) { return fidelity(l) == Fidelity::linear; });
   if (has_modes) job.command.insert(job.command.end(), {"--modes", o_.folder + "/modes"});
   for (const std::vector<std::string>* list : {&o_.overrides, static_cast<const std::vector<std::string>*>(&more)})
@@ -139,6 +162,7 @@ Candidates::Job Candidates::job(const Request& request) const {
 std::set<size_t> Candidates::named_in(const std::string& message) const {
   std::set<size_t> out;
   const std::vector<std::string> sets = mesh().all_names();
+  const size_t n_regions = mesh().region_name.size();
   for (size_t begin = message.find('"'), end = 0; begin != std::string::npos; begin = message.find('"', end + 1)) {
     end = message.find('"', begin + 1);
     if (end == std::string::npos) break;
@@ -154,7 +178,7 @@ std::set<size_t> Candidates::named_in(const std::string& message) const {
       if (mesh().block[i] == block) folded.push_back(static_cast<std::int64_t>(i));
     if (its.empty()) its = std::move(folded);
     std::vector<std::int64_t> shared;
-    for (size_t r = 0; r < names().size(); ++r) {
+    for (size_t r = 0; r < n_regions; ++r) {
       const std::vector<std::int64_t> mine = mesh().nodes_of(names()[r], o_.mesh);
       shared.clear();
       std::set_intersection(mine.begin(), mine.end(), its.begin(), its.end(), std::back_inserter(shared));
@@ -176,8 +200,8 @@ void Candidates::run(const std::vector<Request>& list, const Beyond& beyond) {
     }
     of.emplace_back(j.name, request);
     std::vector<Fidelity> tags;
-    for (const Level l : request.levels) tags.push_back(fidelity(l));
-    write_tags(j.name + "-tags.h5", request.finer ? o_.finer : o_.mesh, tags, {"hilo-advise"});
+    for (size_t r = 0; r < mesh().region_name.size(); ++r) tags.push_back(fidelity(request.levels[r]));
+    if (!tags.empty()) write_tags(j.name + "-tags.h5", request.finer ? o_.finer : o_.mesh, tags, {"hilo-advise"});
     processes.push_back({.command = j.command, .log = j.name + ".log"});
     if (beyond) processes.back().is_enough = [this, name = j.name, &beyond] { return is_beyond(name, beyond); };
     ++runs;
@@ -280,8 +304,8 @@ void Candidates::read(Candidate& c, const std::string& name) const {
 
 Candidates::Modes Candidates::modes_of(size_t region, int scale) const {
   Modes out{40, 0.1 / scene_.table("time").number("step")};
-  for (const Entry& e : scene_.entries("region")) {
-    if (fnmatch(e.name.c_str(), names()[region].c_str(), 0) != 0) continue;
+  for (const Entry& e : scene_.entries(is_beam(region) ? "beam" : "region")) {
+    if (is_beam(region) ? e.name != names()[region] : fnmatch(e.name.c_str(), names()[region].c_str(), 0) != 0) continue;
     if (e.given("modes")) out.most = static_cast<int>(e.number("modes"));
     if (e.given("up_to")) out.up_to = e.number("up_to");
   }

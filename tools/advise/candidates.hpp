@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models of a scene that differ in the levels of its regions, each run by hilo-solve and kept by content.
+// Models of a scene that differ in the levels of its regions, each run by hilo-solve and kept by content.  Beams of the scene count as
+// regions behind those of the mesh; they are linear or nonlinear.
 #pragma once
 #include <functional>
 #include <map>
@@ -38,7 +39,7 @@ struct Candidate : Request {
 class Candidates {
  public:
   struct Options {
-    std::string scene, mesh, finer, folder;  // finer: a mesh of the same regions, or nothing
+    std::string scene, mesh, finer, folder;  // mesh: or nothing; finer: a mesh of the same regions, or nothing
     std::vector<std::string> overrides;
     double tolerance;  // of quantities that say none, relative
     int at_once = 1;
@@ -47,7 +48,11 @@ class Candidates {
 
   const Scene& scene() const { return scene_; }
   const Mesh& mesh() const { return mesh_.mesh; }
-  const std::vector<std::string>& names() const { return mesh_.mesh.region_name; }
+  /// Of regions and beams.
+  const std::vector<std::string>& names() const { return names_; }
+  bool is_beam(size_t r) const { return r >= mesh().region_name.size(); }
+  /// In a scene: region."hull", beam."rail".
+  std::string table(size_t r) const;
   /// How many vibration modes a linear region has at most, and up to which frequency [Hz].  As the scene says, or `scale` times as many:
   /// frequencies of beams grow with the square of their number, and twice as far, for at least four modes there are in any case.
   struct Modes {
@@ -59,14 +64,14 @@ class Candidates {
   double refinement() const { return refinement_; }
   /// Regions that share nodes with region r.
   const std::vector<size_t>& neighbours(size_t r) const { return neighbours_[r]; }
-  /// Where one of the linear regions that share nodes has stiffening, all of these have.
+  /// Where one of the linear regions that share nodes has stiffening, all of these have; beams are linear at least, and never stiffen.
   Assignment consistent(Assignment levels) const;
 
   /// Regions that a message names in quotation marks: by their names, as parts of a body of several ("a+b"), or by a set of their nodes.
   std::set<size_t> named_in(const std::string& message) const;
 
   /// Is stiffening cheaper than cells?  It takes about as long as a thousand unknowns of these.
-  bool is_large(size_t r) const { return 3 * nodes_[r] > 2000; }
+  bool is_large(size_t r) const { return !is_beam(r) && 3 * nodes_[r] > 2000; }
 
   /// Can a run no longer serve whose peaks are at least these?
   using Beyond = std::function<bool(const std::vector<QuantityValue>& so_far)>;
@@ -102,7 +107,8 @@ class Candidates {
   std::string mesh_digest_, finer_digest_;
   double refinement_ = 0;
   std::vector<std::vector<size_t>> neighbours_;
-  std::vector<double> nodes_;  // by region
+  std::vector<std::string> names_;
+  std::vector<double> nodes_;  // by region; a section of a beam counts as two
   std::map<std::string, Candidate> done_;
 };
 

@@ -132,13 +132,14 @@ void Judgement::find_base() {
 /// Regions with a surface in a contact: a linear one gives way there by few modes, and no measure tells what it lacks.
 void Judgement::find_contacts() {
   const auto take = [&](const std::string& name) {
-    for (size_t r = 0; name == "all" && r < n; ++r) touched_.insert(r);
+    for (size_t r = 0; name == "all" && r < n; ++r)
+      if (!all.is_beam(r)) touched_.insert(r);
     touched_.merge(all.named_in('"' + name + '"'));
     for (const Entry& set : all.scene().entries("set"))
       for (size_t r = 0; set.name == name && r < n; ++r)
-        if (!set.has("of") || std::ranges::any_of(set.texts("of"), [&](const std::string& of) {
+        if (!all.is_beam(r) && (!set.has("of") || std::ranges::any_of(set.texts("of"), [&](const std::string& of) {
               return fnmatch(of.c_str(), all.names()[r].c_str(), 0) == 0;
-            }))
+            })))
           touched_.insert(r);
   };
   for (const Entry& e : all.scene().entries("contact")) take(e.text("a")), take(e.text("b"));

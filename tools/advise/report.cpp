@@ -171,15 +171,15 @@ std::string rules(const Candidates& all, const Advice& a, const std::string& com
   for (const Fidelity f : {Fidelity::rigid, Fidelity::linear, Fidelity::nonlinear}) {
     std::string list;
     for (size_t r = 0; r < all.names().size(); ++r)
-      if (fidelity(a.chosen->levels[r]) == f) list += (list.empty() ? "" : ", ") + json_text(all.names()[r]);
+      if (!all.is_beam(r) && fidelity(a.chosen->levels[r]) == f) list += (list.empty() ? "" : ", ") + json_text(all.names()[r]);
     if (!list.empty()) text += fmt::format("{} = [{}]\n", word(f), list);
   }
   for (size_t r = 0; r < all.names().size(); ++r) {
-    if (a.chosen->levels[r] == Level::stiffening)
-      text += fmt::format("# in the scene: [region.\"{}\"] stiffening = true\n", all.names()[r]);
+    if (all.is_beam(r)) text += fmt::format("# in the scene: [{}] fidelity = \"{}\"\n", all.table(r), word(a.chosen->levels[r]));
+    if (a.chosen->levels[r] == Level::stiffening) text += fmt::format("# in the scene: [{}] stiffening = true\n", all.table(r));
     if (a.chosen->modes == 1 || fidelity(a.chosen->levels[r]) != Fidelity::linear) continue;
     const auto [most, up_to] = all.modes_of(r, a.chosen->modes);
-    text += fmt::format("# in the scene: [region.\"{}\"] modes = {}, up_to = {:.6g}\n", all.names()[r], most, up_to);
+    text += fmt::format("# in the scene: [{}] modes = {}, up_to = {:.6g}\n", all.table(r), most, up_to);
   }
   return text;
 }

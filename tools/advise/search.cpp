@@ -203,6 +203,7 @@ class Search : Judgement {
       Assignment levels = from;
       levels[r] = to(from[r]);
       const Request single = request(levels);
+      if (single.levels == from) continue;  // a beam
       if (!all.knows(single)) {
         if (too_dear(single, planned) || saves_little(single, request(from), planned)) continue;
         planned += all.price(single);

@@ -98,6 +98,29 @@ TEST_F(LinearBeams, TipsGiveAsClosedFormsSay) {
   EXPECT_NEAR(top(top.rows() - 1, 1) - 1, exact, 1e-3 * exact);
 }
 
+// However slender and however turned: stretch is 1e8 times as stiff as bending here, and its force is still exact.  Bernoulli's
+// frequencies.
+TEST_F(LinearBeams, OfAnySlendernessKeepTheirDigits) {
+  const Vec3 along(0.6, 0.48, 0.64);
+  const double E = 2e11, h = 1e-4, I = h * h * h * h / 12, pull = 1e-5 * E * I, push_across = 1e-3 * pull;
+  for (const int cells : {4, 40}) {
+    const std::string scene =
+        fmt::format("[section.s]\nkind = \"rectangle\"\nwidth = {0}\nheight = {0}\n[material.m]\nE = 2e11\nnu = 0.3\ndensity = 7800\n{1}",
+                    h, beam_of("[[0, 0, 0], [0.6, 0.48, 0.64]]", cells, "material = \"m\"\na = \"ground\"\n" + linear));
+    const Results r = solved(scene + push("arm.end", pull * along + push_across * Vec3(0.8, 0, -0.75 * 0.8)) + tip_probe() + in_steps(1));
+    const Eigen::VectorXd f = r.history("beam/arm").bottomRows(1).transpose();
+    const double N = pull + push_across * (0.48 - 0.384);
+    for (int end = 0; end < 2 * cells; ++end) EXPECT_NEAR(f[6 * end + 2], N, 1e-6 * N) << cells;
+    const Vec3 across = push_across * (Vec3(0.8, 0, -0.6) - along * along.dot(Vec3(0.8, 0, -0.6))),
+               u = r.history("probe/tip").row(1).head<3>().transpose() - along;
+    EXPECT_LT((u - u.dot(along) * along - across / (3 * E * I)).norm(), 1e-5 * across.norm() / (3 * E * I)) << cells;
+    work.write("modes.toml", scene + "[time]\nanalysis = \"modes\"\nmodes = 2\n");
+    succeeded(work.run("hilo-solve modes.toml -o modes.h5"));
+    const double exact = 1.8751041 * 1.8751041 / (2 * pi) * std::sqrt(E / 7800 * h * h / 12);
+    for (const int k : {0, 1}) EXPECT_NEAR(Results(work / "modes.h5").history("mode").col(0).tail(2)[k], exact, 1e-4 * exact) << cells;
+  }
+}
+
 // Rigid motion is exact: a free beam that spins keeps its momenta, however far it turns.
 TEST_F(LinearBeams, AFreeBeamKeepsItsMomenta) {
   const Results r =
@@ -107,11 +130,10 @@ TEST_F(LinearBeams, AFreeBeamKeepsItsMomenta) {
   EXPECT_LT(k.energy, 1e-10);
   EXPECT_LT(k.momentum, 1e-10);
   EXPECT_LT(k.angular, 1e-10);
-  EXPECT_NEAR(r.history("momentum")(0, 2), -std::sqrt(1.29) + 0.4 * 0, 1) << "it moves";
 }
 
-std::string frame(const std::string& more) {  // two legs and a beam between them on a section and a body without mass
-  return "gravity = [0, 0, -9.81]\n"
+std::string frame(const std::string& more, double g = 9.81) {  // two legs and a beam between them on a section and a body without mass
+  return fmt::format("gravity = [0, 0, {}]\n", -g) +
          "[section.s]\nkind = \"tube\"\ndiameter = 0.04\nthickness = 0.003\n[material.m]\nE = 2e11\nnu = 0.3\ndensity = 7800\n" +
          beam_of("[[0, 0, 0], [0, 0, 1], [1, 0, 1]]", 3, "material = \"m\"\na = \"ground\"\nFIDELITY" + more) +
          "[beam.leg]\npoints = [[1, 1, 0], [1, 1, 1]]\ncells = [3]\nsection = \"s\"\nmaterial = \"m\"\na = \"ground\"\nb = \"knee\"\n"
@@ -137,7 +159,7 @@ TEST_F(LinearBeams, AtRestAFrameBearsWhatTheNonlinearOneDoes) {
 
 // A beam bears its weight: at the foot of a post all of it, half of it in the middle, whatever the bending beside it.
 TEST_F(LinearBeams, APostBearsItsWeightExactly) {
-  const Results r = solved("gravity = [1, 0, -9.81]\n" + plain_section(1e8, 1e8, 1e3, 1e3, "line_mass = 3\ninertia = [1e-4, 1e-4]") +
+  const Results r = solved("gravity = [1, 0, -9.81]\n" + plain_section(1e8, 1e8, 1e6, 1e6, "line_mass = 3\ninertia = [1e-4, 1e-4]") +
                            beam_of("[[0, 0, 0], [0, 0, 2]]", 8, "a = \"ground\"\n" + linear) + in_steps(1) + sharp);
   const Eigen::VectorXd f = r.history("beam/arm").bottomRows(1).transpose();
   for (int end = 0; end < 16; ++end) {
@@ -147,14 +169,15 @@ TEST_F(LinearBeams, APostBearsItsWeightExactly) {
   }
 }
 
-// Moving: a push that comes and goes, damping by stiffness and by mass, a weight on the frame.
+// Moving: a push that comes and goes, damping by stiffness and by mass, a weight on the frame.  What their own weight softens the legs by
+// a linear beam does not know, so it is small.
 TEST_F(LinearBeams, MovingLittleAFrameDoesWhatTheNonlinearOneDoes) {
   const std::string moved = push("arm.2", Vec3(3, 2, 1), "history = {t = [0, 0.01, 0.02], value = [0, 1, 0], interpolation = \"smooth\"}");
-  EXPECT_LT(apart(frame("damping = 2e-4\nmass_damping = 3\nmodes = 400\nup_to = 1e7\n") + moved +
+  EXPECT_LT(apart(frame("damping = 2e-4\nmass_damping = 3\nmodes = 400\nup_to = 1e7\n", 0.1) + moved +
                       "[[point_mass]]\nname = \"w\"\non = \"cross.2\"\nmass = 2\n" + probe("p", "cross.1") + probe("q", "arm.5") +
                       in_time(0.1, 2e-4, "start = \"equilibrium\""),
                   {"probe/p", "probe/q", "beam/arm", "beam/cross"}),
-            1e-2);
+            5e-4);
 }
 
 // The slowest swing of a rod on a hinge, sqrt(3 g/2 L), and no more: large turns are those of a rigid bar.
@@ -196,7 +219,7 @@ TEST_F(LinearBeams, ModesOnFileServe) {
 }
 
 TEST_F(LinearBeams, AreTheSameOnRanksAndAfterARestart) {
-  std::string scene = frame("") + probe("p", "cross.1") + push("arm.2", Vec3(3, 2, 1)) + in_time(0.02, 5e-4);
+  std::string scene = frame("") + probe("p", "cross.1") + push("arm.2", Vec3(3, 2, 1)) + in_time(0.02, 5e-4) + sharp;
   for (size_t at; (at = scene.find("FIDELITY")) != scene.npos;) scene.replace(at, 8, linear);
   const Results one = solved_as("one", scene);
   for (const int n : {2, 3}) {
