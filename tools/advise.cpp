@@ -45,8 +45,8 @@ std::map<size_t, Level> kept_levels(const Options& o, const Candidates& all) {
     const auto at = std::find(regions.begin(), regions.end(), name);
     if (at == regions.end()) throw Error(option, fmt::format("no region \"{}\"", name), suggest(name, regions), Exit::usage);
     const auto r = static_cast<size_t>(at - regions.begin());
-    if (all.is_beam(r) && level != Level::linear && level != Level::nonlinear)
-      throw Error(option, fmt::format("beam \"{}\" is linear or nonlinear", name), fmt::format("--keep '{}=linear'", name), Exit::usage);
+    if (all.is_beam(r) && level == Level::stiffening)
+      throw Error(option, fmt::format("beam \"{}\" cannot stiffen", name), fmt::format("--keep '{}=linear'", name), Exit::usage);
     if (!out.emplace(r, level).second)
       throw Error(option, fmt::format("says twice how region \"{}\" is kept", name), "once is enough", Exit::usage);
   };
@@ -96,11 +96,11 @@ void run(const Options& o) {
 int main(int argc, char** argv) {
   using namespace hilo;
   return guarded("hilo-advise", [&] {
-    const auto app = make_app({"hilo-advise",
-                               "The cheapest fidelity of each region (rigid, linear, stiffening, nonlinear) and beam (linear, nonlinear) "
-                               "that keeps the quantities of a "
-                               "scene to a tolerance.",
-                               "hilo-advise scene.toml tags.h5 --tol 2% --apply tags.toml", about()});
+    const auto app =
+        make_app({"hilo-advise",
+                  "The cheapest fidelity of each region (rigid, linear, stiffening, nonlinear) and beam (rigid, linear, nonlinear) "
+                  "that keeps the quantities of a scene to a tolerance.",
+                  "hilo-advise scene.toml tags.h5 --tol 2% --apply tags.toml", about()});
     Options o;
     app->add_option("scene", o.scene, "scene file (TOML) with [[quantity]]")->required();
     app->add_option("mesh", o.mesh, "mesh.h5 or tags.h5; its own tags do not matter; none of a scene of beams alone");

@@ -64,13 +64,16 @@ struct Chain {
 Chain chain_of(const RunFile& run, const std::vector<std::string>& globs) {
   Chain chain;
   std::vector<std::string> all;
-  for (const RunBeam& b : run.beams()) all.push_back(b.name);
+  for (const RunBeam& b : run.beams())
+    if (b.bears) all.push_back(b.name);
+  if (all.empty() && !run.beams().empty())
+    throw Error(run.path, "its beams are rigid: what they bear is not known", "fidelity = \"linear\"");
   if (all.empty()) throw Error(run.path, "has no beams", "write [beam.NAME] into the scene");
   double from = 0;
   for (const std::string& glob : globs) {
     bool any = false;
     for (const RunBeam& b : run.beams()) {
-      if (!matches(glob, b.name)) continue;
+      if (!b.bears || !matches(glob, b.name)) continue;
       any = true;
       if (!chain.forces.emplace(b.name, run.series("beam." + b.name)).second) continue;
       for (size_t k = 0; k < b.line.cells.size(); ++k)

@@ -73,7 +73,7 @@ void RunFile::stand_in_bodies() {
   file.tagged = true;
   mesh_ = std::move(file);
   steps.clear();
-  const std::vector<double> t = bodies_.empty() ? series("beam." + beams().front().name).t : bodies_.front().way.t;
+  const std::vector<double> t = bodies_.empty() ? store_->read<double>("/history/t") : bodies_.front().way.t;
   for (size_t row = 0; row < t.size(); ++row) steps.push_back({fmt::format("{:06}", row), t[row]});
 }
 

@@ -101,12 +101,12 @@ RunBeam beam_of(const Scene& scene, const Entry& e, KeptFaces& meshed) {
 
 std::vector<RunBeam> beams_of(const RunFile& run) {
   std::vector<RunBeam> out;
-  if (!run.store().has("/history/beam")) return out;
   const Scene scene = scene_of(run);
   KeptFaces meshed(run.store());
   std::map<std::string, std::string> own;  // a section by each of its names
   for (const Entry& e : scene.entries("beam")) {
     out.push_back(beam_of(scene, e, meshed));
+    out.back().bears = e.text("fidelity") != "rigid";
     for (const auto& [name, k] : section_names(e, out.back().line)) own[name] = out.back().on[k];
   }
   for (RunBeam& b : out)

@@ -21,9 +21,12 @@ struct RunBeam {
     Vec3 radii = Vec3::Zero();             // of gyration about axes 1 and 2, and 0 [m]
   };
   std::vector<Section> sections;  // one, or those of a taper (n_cells + 1)
+  bool bears = true;              // what it bears is in the run; a rigid beam's is not known
   const Section& section(size_t k) const { return sections[sections.size() > 1 ? k : 0]; }
   bool has_face() const { return sections.front().face.has_value(); }
+  bool has_stress() const { return bears && has_face(); }
   bool has_outline() const { return has_face() && !sections.front().face->cells.empty(); }  // else points with stress alone, or none
+  bool shows_stress() const { return bears && has_outline(); }
 };
 /// Of the scene that a run keeps.
 std::vector<RunBeam> beams_of(const RunFile& run);

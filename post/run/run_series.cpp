@@ -87,7 +87,7 @@ const RunBeam* RunFile::stressed_beam(const std::string& series) const {
   constexpr std::string_view group = "beam_stress.";
   if (!series.starts_with(group)) return nullptr;
   for (const RunBeam& b : beams())
-    if (b.has_face() && b.name == series.substr(group.size())) return &b;
+    if (b.has_stress() && b.name == series.substr(group.size())) return &b;
   return nullptr;
 }
 
@@ -100,7 +100,7 @@ std::vector<std::string> RunFile::series_names() const {
     if (members.empty() && !store_->shape("/history/" + item).empty()) names.push_back(item);
     if (item == "beam")
       for (const RunBeam& b : beams())
-        if (b.has_face()) names.push_back("beam_stress." + b.name);
+        if (b.has_stress()) names.push_back("beam_stress." + b.name);
   }
   return names;
 }

@@ -53,12 +53,12 @@ SweptBeams::SweptBeams(const RunFile& run, MeshFile& file)
     const RunBeam& b = beams_[k];
     auto& faces = drawn_.emplace_back();
     for (const RunBeam::Section& section : b.sections) faces.push_back(b.has_outline() ? *section.face : stand_in_face(section));
-    forces_.push_back(b.has_outline() ? run.series("beam." + b.name) : Series{});
+    forces_.push_back(b.shows_stress() ? run.series("beam." + b.name) : Series{});
     const SectionFace& face = faces.front();
     const auto region = static_cast<std::int32_t>(mesh.region_name.size());
     mesh.region_name.push_back(b.name);
     mesh.region_data.emplace_back();
-    file.fidelity.push_back(Fidelity::nonlinear);
+    file.fidelity.push_back(b.bears ? Fidelity::nonlinear : Fidelity::rigid);
     std::int64_t ring = -1;  // first node of the last one
     for (size_t c = 0; c < b.line.cells.size(); ++c) {
       const bool goes_on = c > 0 && (b.line.cells[c - 1].frame_b - b.line.cells[c].frame_a).norm() < 1e-9;
@@ -95,7 +95,7 @@ SweptBeams::SweptBeams(const RunFile& run, MeshFile& file)
 }
 
 bool SweptBeams::stressed() const {
-  return std::any_of(beams_.begin(), beams_.end(), [](const RunBeam& b) { return b.has_outline(); });
+  return std::any_of(beams_.begin(), beams_.end(), [](const RunBeam& b) { return b.shows_stress(); });
 }
 
 SweptBeams::Poses SweptBeams::poses(const RunFile::Field& own, size_t wanted) const {
@@ -137,7 +137,7 @@ std::vector<Vec3> SweptBeams::positions(const Poses& poses) const {
 std::vector<double> SweptBeams::stress(const std::string& name, size_t wanted) const {
   std::vector<double> out;
   for (const Node& n : nodes_) {
-    if (!beams_[n.beam].has_outline()) {
+    if (!beams_[n.beam].shows_stress()) {
       out.push_back(0);
       continue;
     }

@@ -18,7 +18,7 @@ class SweptBeams {
   size_t first_node() const { return first_node_; }
   size_t first_region() const { return first_region_; }
   bool stressed() const;  // has any beam a face
-  bool has_face(size_t region) const { return beams_[region - first_region_].has_outline(); }
+  bool has_face(size_t region) const { return beams_[region - first_region_].shows_stress(); }
   /// Adds the values of the nodes, or of the cells, of beams to those of the mesh at a step.
   void append(const Step& step, const std::string& name, RunFile::Field& field) const;
 

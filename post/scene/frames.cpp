@@ -56,8 +56,8 @@ std::vector<Box> divided(const Box& whole, size_t n, bool row, double gap, doubl
 
 Frames::Frames(const FrameOptions& o) : o_(o) {
   const RunFile first(o.run);
-  const auto has_face = [](const RunBeam& b) { return b.has_outline(); };
-  if (o_.field == "von_mises" && !first.has_mesh() && std::none_of(first.beams().begin(), first.beams().end(), has_face)) {
+  const auto shows_stress = [](const RunBeam& b) { return b.shows_stress(); };
+  if (o_.field == "von_mises" && !first.has_mesh() && std::none_of(first.beams().begin(), first.beams().end(), shows_stress)) {
     warn(o.run, "bodies without a mesh have no stress: drawn by their names");
     o_.field = "region";
   }

@@ -247,7 +247,7 @@ class BucklingSteps final : public Steps {
     require_held(system, drawn.q, drawn.t, 1, where);
     system.commit(drawn.q);
     for (const LinearRegion& r : system.part<LinearRegions>().regions)
-      if (const Modes& m = system.modes[static_cast<size_t>(r.modes)]; !m.stiffens)
+      if (const Modes& m = system.modes[static_cast<size_t>(r.modes)]; m.n_modes > 0 && !m.stiffens)
         warn(where, fmt::format("linear region \"{}\": its stresses change no stiffness, so factors are too large ({})",
                                 system.bodies[m.body].name, m.better()));
     run_.audit->start(drawn);

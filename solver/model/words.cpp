@@ -10,7 +10,7 @@ namespace hilo {
 Registry<Word>* words_of(std::string_view section, std::string_view key) {
   static std::map<std::pair<std::string_view, std::string_view>, Registry<Word>> lists{
       {{"beam", "path"}, {"path of a beam", {{"line"}, {"arc"}}}},
-      {{"beam", "fidelity"}, {"fidelity of a beam", {{"linear"}, {"nonlinear"}}}},
+      {{"beam", "fidelity"}, {"fidelity of a beam", {{"rigid"}, {"linear"}, {"nonlinear"}}}},
       {{"motion", "components"}, {"component", {{"x"}, {"y"}, {"z"}}}},
       {{"history", "interpolation"}, {"interpolation", {{"linear"}, {"smooth"}, {"smoother"}, {"spline"}, {"monotone"}}}},
       {{"history", "ends"}, {"ends of a spline", {{"natural"}, {"clamped"}, {"periodic"}}}},

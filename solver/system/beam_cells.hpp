@@ -32,6 +32,7 @@ struct BeamCell {
 struct Beam {
   std::string name;
   int first = 0, n_cells = 0;  // of the list
+  bool rigid = false;          // what it bears is not known
 };
 
 /// A force per length on the cells of a beam, linear along each cell: in inertial axes, or in axes of the sections, which it then turns

@@ -163,10 +163,10 @@ void Builder::add_beams() {
   Faces faces(scene_, comm_, beams.meshes);
   for (BeamPlan& plan : beam_plans_) {
     const Entry& e = *plan.entry;
-    plan.linear = fidelity_of(e.text("fidelity"), e.where("fidelity")) == Fidelity::linear;
+    plan.fidelity = fidelity_of(e.text("fidelity"), e.where("fidelity"));
     for (const char* key : {"a", "b"})
       if (e.given(key)) {
-        const int known = plan.linear ? find(e.text(key), e.where(key), Asks::looks).body : -1;
+        const int known = plan.by_modes() ? find(e.text(key), e.where(key), Asks::looks).body : -1;
         (key[0] == 'a' ? plan.body.front() : plan.body.back()) = known >= 0 ? known : carrier(e, key, true).body;
       }
     const Sections sections(scene_, e, is_static(), faces);
@@ -175,7 +175,7 @@ void Builder::add_beams() {
     for (size_t k = 0; k + 1 < s.size(); ++k)
       for (size_t i = 0; i < along_arc.size(); ++i) plan.sections[k][i] = sections.at(std::lerp(s[k], s[k + 1], along_arc[i].t) / s.back());
     check_carriers(plan);
-    if (plan.linear) continue;
+    if (plan.by_modes()) continue;
     beams.beams.push_back({e.name, static_cast<int>(beams.cells.size()), static_cast<int>(plan.line.cells.size())});
     for (size_t k = 0; k < plan.line.cells.size(); ++k) {
       const BeamLine::Cell& cell = plan.line.cells[k];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Beams of linear fidelity to mean axes and modes.
+// Beams of linear fidelity to mean axes and modes, rigid ones to mean axes.
 //
 // A section is four nodes that move as one, so that masses at them are those of the beam exactly.  What beams ride on is a place: its
 // sections move as one too.  Where something acts on its body it is an interface, welded to that body; elsewhere the region carries it.
@@ -30,7 +30,7 @@ void Builder::add_linear_beams() {
   const auto n_bodies = static_cast<int>(out_->bodies.size());
   std::vector<char> is_section(static_cast<size_t>(n_bodies), 0);
   for (const BeamPlan& plan : beam_plans_)
-    for (size_t k = 0; k < plan.body.size() && plan.linear; ++k) {
+    for (size_t k = 0; k < plan.body.size() && plan.by_modes(); ++k) {
       const bool rides = (k == 0 && plan.entry->given("a")) || (k + 1 == plan.body.size() && plan.entry->given("b"));
       if (!rides) is_section[static_cast<size_t>(plan.body[k])] = 1;
     }
@@ -40,19 +40,21 @@ void Builder::add_linear_beams() {
     return is_section[static_cast<size_t>(b)] ||
            (b > 0 && body.mass == 0 && body.J.isZero(0) && !body.patch && named != body_by_name_.end() && named->second == b);
   };
-  for (const BeamPlan& plan : beam_plans_)  // sections of nonlinear beams are bodies by themselves
-    for (const int b : plan.body)
-      if (!plan.linear) acted_on_.insert(b);
   const auto n_plans = static_cast<int>(beam_plans_.size());
   Joined joined(n_plans);
   std::map<int, int> first;
   for (int k = 0; k < n_plans; ++k)
-    for (const int b : beam_plans_[k].body)
-      if (beam_plans_[k].linear && hangs_together(b))
-        if (const auto [at, fresh] = first.try_emplace(b, k); !fresh) joined.join(at->second, k);
+    for (const int b : beam_plans_[k].body) {
+      const auto [at, fresh] = first.try_emplace(b, k);
+      if (fresh) continue;
+      if (beam_plans_[k].fidelity != beam_plans_[at->second].fidelity)
+        acted_on_.insert(b);
+      else if (hangs_together(b))
+        joined.join(at->second, k);
+    }
   std::map<int, std::vector<int>> groups;
   for (int k = 0; k < n_plans; ++k)
-    if (beam_plans_[k].linear) groups[joined.root(k)].push_back(k);
+    if (beam_plans_[k].by_modes()) groups[joined.root(k)].push_back(k);
   for (auto& [root, plans] : groups) add_beam_region(std::move(plans), hangs_together);
 }
 
@@ -60,6 +62,7 @@ void Builder::add_beam_region(std::vector<int> plans, const std::function<bool(i
   LinearBeams& beams = out_->part<LinearBeams>();
   BeamRegion region;
   region.modes = static_cast<int>(out_->modes.size());
+  region.rigid = beam_plans_[plans.front()].fidelity == Fidelity::rigid;
   region.first_cell = static_cast<int>(beams.cells.size());
   std::map<int, size_t> place_of;
   const auto add_section = [&](const Vec3& at, int body) {
@@ -80,7 +83,7 @@ void Builder::add_beam_region(std::vector<int> plans, const std::function<bool(i
       e.refuse(e.given("modal_damping") ? "modal_damping" : "",
                fmt::format("beams \"{}\" and \"{}\" hang together and share modes, but differ in modal_damping", one.entry->name, e.name),
                "give both the same value");
-    beams.beams.push_back({e.name, static_cast<int>(beams.cells.size()), static_cast<int>(plan.line.cells.size())});
+    beams.beams.push_back({e.name, static_cast<int>(beams.cells.size()), static_cast<int>(plan.line.cells.size()), region.rigid});
     const int first = add_section(plan.line.at.front(), plan.body.front());
     for (size_t k = 0, a = static_cast<size_t>(first); k < plan.line.cells.size(); ++k) {
       const BeamLine::Cell& cell = plan.line.cells[k];
@@ -114,15 +117,16 @@ void Builder::add_mean_axes(BeamRegion& region) {
     }
     mass += cell.mass.sum(), moment += X.transpose() * cell.mass.rowwise().sum(), second += X.transpose() * cell.mass * X;
   }
-  if (!(mass > 0)) e.refuse("fidelity", "a linear beam needs a mass", "density of its material, or line_mass of its section");
+  if (!(mass > 0))
+    e.refuse("fidelity", fmt::format("a beam of fidelity \"{}\" needs a mass", e.text("fidelity")),
+             "density of its material, or line_mass of its section");
   const Vec3 com = moment / mass;
   std::string name = e.name;
   constexpr size_t named = 4;
   for (size_t k = 1; k < region.plans.size() && region.plans.size() <= named; ++k) name += "+" + beam_plans_[region.plans[k]].entry->name;
   if (region.plans.size() > named) name += fmt::format("+{} more", region.plans.size() - 1);
   if (body_by_name_.contains(name) || (mesh_ && mesh_->mesh.find_region(name) >= 0))
-    throw Error(e.place.text(),
-                fmt::format("{}: a body or region is called \"{}\", as the mean axes of this linear beam", e.label(), name));
+    throw Error(e.place.text(), fmt::format("{}: a body or region is called \"{}\", as the mean axes of this beam", e.label(), name));
   const int b = new_body(name, origin + com);
   Body& axes = out_->bodies[b];
   axes.mass = mass, axes.J = second - mass * com * com.transpose(), axes.linear = true;
@@ -130,7 +134,7 @@ void Builder::add_mean_axes(BeamRegion& region) {
   const Mat3 inertia = axes.J.trace() * Mat3::Identity() - axes.J;
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
   if (!(eigen.eigenvalues()[0] > 1e-14 * eigen.eigenvalues()[2]))
-    e.refuse("fidelity", "nothing of this linear beam has inertia about its axis", "inertia of its section, or fidelity = \"nonlinear\"");
+    e.refuse("fidelity", "nothing of this beam has inertia about its axis", "inertia of its section, or fidelity = \"nonlinear\"");
   out_->modes_of.resize(out_->bodies.size(), -1);
   out_->modes_of[b] = region.modes;
   Modes& modes = out_->modes.emplace_back();

@@ -33,13 +33,14 @@ void Builder::reduce_linear_regions() {
     const auto& welds = parcel.welds;
     const auto& local = parcel.local;
     Reduction found;
-    if (comm_.rank != 0) SharedCholesky(comm_).serve();
+    const bool rigid = beams && beams->rigid;
+    if (comm_.rank != 0 && !rigid) SharedCholesky(comm_).serve();
     std::vector<double> head;  // modes, first frequency left out, omega2, A, levers, then of each weld: rows left out, axes, shares, means
                                // and stretches; motions of sections of beams
     if (comm_.rank == 0) {
       const ReductionInput in = beams ? beam_input(*beams, parcel) : reduction_input(parcel, axes);
       const auto n = static_cast<int>(in.X.size());
-      found = reduction_of(in, axes, parcel.where);
+      found = rigid ? rigid_one(in) : reduction_of(in, axes, parcel.where);
       const auto m = found.omega2.size();
       head.push_back(static_cast<double>(m));
       head.push_back(found.held_frequency);
@@ -138,7 +139,7 @@ void Builder::reduce_linear_regions() {
     out_->part<LinearRegions>().regions.push_back(std::move(made));
     if (beams) set_sections(*beams, std::span(head).subspan(at));
     if (!beams) spread_shapes(modes, found, local);
-    if (!reductions_.empty() && reductions_.back().found.A.size() == 0) reductions_.back().found = std::move(found);
+    if (!rigid && !reductions_.empty() && reductions_.back().found.A.size() == 0) reductions_.back().found = std::move(found);
   }
   comm_.on_first([&] {
     if (!reductions_.empty()) keep_reductions();

@@ -217,12 +217,14 @@ class Builder {
     const Entry* entry;
     BeamLine line;
     std::vector<int> body;  // of each section, -1: not yet known
-    bool linear = false;
+    Fidelity fidelity = Fidelity::nonlinear;
+    bool by_modes() const { return fidelity != Fidelity::nonlinear; }
     std::vector<SectionsAlong> sections{};  // of each cell
   };
-  /// Linear beams that hang together by their sections and by bodies without mass: one set of mean axes and modes.
+  /// Beams of one fidelity that hang together by their sections and by bodies without mass: one set of mean axes, and modes if linear.
   struct BeamRegion {
     int modes = -1;
+    bool rigid = false;
     std::vector<int> plans;
     struct Place {
       int body;

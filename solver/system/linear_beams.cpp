@@ -218,7 +218,7 @@ void LinearBeams::carry(Config& q) const {
 }
 
 std::string LinearBeams::count() const {
-  return beams.empty() ? "" : fmt::format("{} beams of linear regions with {} cells", beams.size(), cells.size());
+  return beams.empty() ? "" : fmt::format("{} linear or rigid beams with {} cells", beams.size(), cells.size());
 }
 
 /// Loads by length alone: all else is the region's.
@@ -280,7 +280,8 @@ void LinearBeams::tie(Ties& ties) const {
 
 std::vector<Output> LinearBeams::outputs() const {
   std::vector<Output> out;
-  for (const Beam& beam : beams) out.push_back({.group = "beam", .name = beam.name, .n_mid = 12 * beam.n_cells});
+  for (const Beam& beam : beams)
+    if (!beam.rigid) out.push_back({.group = "beam", .name = beam.name, .n_mid = 12 * beam.n_cells});
   return out;
 }
 
@@ -293,6 +294,7 @@ void LinearBeams::observe(const Sight& sight) {
   for (size_t k = 0; k < cells.size(); ++k) {
     const BeamCell& cell = cells[k];
     const int modes = sections[cell.body[0]].modes;
+    if (points_.modes[modes].n_modes == 0) continue;  // rigid
     const auto& [elastic, rate] = by_modes[modes];
     Eigen::Matrix<double, 12, 1> f = strains_[k].transpose() * (strains_[k] * ends_of(cell, elastic + cell.arc.beta * rate));
     arc::SectionPoints<double> rates = points_of(cell, *s.a);

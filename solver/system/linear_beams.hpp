@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Beams of linear regions: loads by length on them, and forces and moments at their sections.
+// Beams that are linear or rigid: loads by length on them, and forces and moments at their sections.
 //
 // A section moves by the modes of its region as a body would: with u_j and w_j what a unit of amplitude j moves and turns it by,
 //   c = c_axes + R r + sum_j Y_j u_j,   d_i = R d_i0 + sum_j Y_j (w_j x d_i0),   Y_j = eta_j R

@@ -362,7 +362,24 @@ Matrix moments(const ReductionInput& in, const Matrix& shapes, const RegionCells
   return (out + out.transpose()) / 2;
 }
 
+bool any(const ReductionInput& in, double SolidBatch::*of_batch, double PointCell::*of_cell) {
+  return std::ranges::any_of(in.cells, [&](const SolidBatch& b) { return b.*of_batch > 0; }) ||
+         std::ranges::any_of(in.points, [&](const PointCell& c) { return c.*of_cell > 0; });
+}
+
+void add_moments(const ReductionInput& in, const RegionCells& cells, Reduction& out) {
+  out.A = moments(in, out.shapes, cells.scalar_mass());
+  if (any(in, &SolidBatch::alpha, &PointCell::alpha)) out.A_damped = moments(in, out.shapes, cells.scalar(RegionCells::damping_by_mass));
+}
+
 }  // namespace
+
+Reduction rigid_one(const ReductionInput& in) {
+  Reduction out;
+  out.shapes.resize(3 * std::ssize(in.X), 0);
+  add_moments(in, RegionCells(in.X, in.cells, in.points), out);
+  return out;
+}
 
 Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   const auto tell = [&](const std::string& what) {
@@ -411,13 +428,8 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   SecondOrder second = second_order(in, out.shapes, out.omega2, cells.times_mass(parts.front().leftCols(interfaces.n_rigid)));
   out.soft = std::move(second.soft), out.second_order = std::move(second.forces);
   factor.end();
-  out.A = moments(in, out.shapes, cells.scalar_mass());
-  const auto any = [&](double SolidBatch::*of_batch, double PointCell::*of_cell) {
-    return std::ranges::any_of(in.cells, [&](const SolidBatch& b) { return b.*of_batch > 0; }) ||
-           std::ranges::any_of(in.points, [&](const PointCell& c) { return c.*of_cell > 0; });
-  };
-  if (any(&SolidBatch::alpha, &PointCell::alpha)) out.A_damped = moments(in, out.shapes, cells.scalar(RegionCells::damping_by_mass));
-  if (any(&SolidBatch::beta, &PointCell::beta)) {
+  add_moments(in, cells, out);
+  if (any(in, &SolidBatch::beta, &PointCell::beta)) {
     const Matrix C = transposed_times(out.shapes, cells.times(RegionCells::damping_by_stiffness, out.shapes));
     out.viscous = (C + C.transpose()) / 2;
   }

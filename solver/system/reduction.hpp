@@ -69,5 +69,7 @@ class SharedCholesky;
 /// On rank 0, with the others in the factor's serve().
 /// Errors: a region that is not held together, or cells turned inside out; no memory.
 Reduction reduced(const ReductionInput& in, SharedCholesky& factor);
+/// Of a region that is rigid: no modes.
+Reduction rigid_one(const ReductionInput& in);
 
 }  // namespace hilo

@@ -195,6 +195,7 @@ void RegionMeasures::add_to_report(Json& run) const {
   std::map<std::string, std::vector<Beyond>> warnings;  // by measure
   for (size_t k = 0; k < regions_.size(); ++k) {
     const Modes& m = system_.modes[linear.regions[k].modes];
+    if (m.n_modes == 0) continue;
     const std::string& name = system_.bodies[m.body].name;
     const Region& r = regions_[k];
     const double lacking = linear.lacking(k), band = linear.load_band(k),

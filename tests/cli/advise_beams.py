@@ -53,7 +53,7 @@ with tempfile.TemporaryDirectory() as folder:
         write(scene(sizes, turn))
         told = advice("--work", f"{level}.work")
         levels = {r["region"]: r["level"] for r in told["regions"]}
-        assert set(levels.values()) <= {"linear", "nonlinear"}, levels
+        assert set(levels.values()) <= {"rigid", "linear", "nonlinear"}, levels
         assert levels["a"] == level, (levels, "of a slender bar that a fast hinge turns" if level == "nonlinear" else "of a stout one")
         truth = values("--set", "time.step=5e-4")
         for q in told["quantities"]:
@@ -67,10 +67,9 @@ with tempfile.TemporaryDirectory() as folder:
         for q in told["quantities"]:
             assert abs(chosen[q["quantity"]] - q["value"]) <= 0.1 * q["allowed"], (q, chosen)
         print(f"{sizes}: {levels}")
-    kept = advice("--keep", "a=linear", "--keep", "b=nonlinear", "--work", "kept.work")
-    assert [r["level"] for r in kept["regions"]][:2] == ["linear", "nonlinear"], kept["regions"]
-    for options, what in ((("--keep-rigid", "a"), "linear or nonlinear"), (("--keep", "a=stiffening"), "linear or nonlinear"),
-                          (("--finer", "no.h5"), "there is no mesh")):
+    kept = advice("--keep", "a=linear", "--keep", "b=nonlinear", "--keep-rigid", "c", "--work", "kept.work")
+    assert [r["level"] for r in kept["regions"]] == ["linear", "nonlinear", "rigid"], kept["regions"]
+    for options, what in ((("--keep", "a=stiffening"), "cannot stiffen"), (("--finer", "no.h5"), "there is no mesh")):
         done = run("hilo-advise", "scene.toml", *options)
         assert done.returncode == 1 and what in done.stderr, (options, done.returncode, done.stderr)
     write('[[body]]\nname = "b"\nmass = 1\ncom = [0, 0, 0]\ninertia = [1, 1, 1]\n[[quantity]]\nname = "e"\nkind = "peak"\njoint = "j"\n'

@@ -108,7 +108,7 @@ std::string Candidates::table(size_t r) const { return fmt::format("{}.\"{}\"", 
 
 Assignment Candidates::consistent(Assignment levels) const {
   for (size_t r = 0; r < levels.size(); ++r)
-    if (is_beam(r) && levels[r] != Level::nonlinear) levels[r] = Level::linear;
+    if (is_beam(r) && levels[r] == Level::stiffening) levels[r] = Level::linear;
   for (bool more = true; more;) {
     more = false;
     for (size_t r = 0; r < levels.size(); ++r)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Models of a scene that differ in the levels of its regions, each run by hilo-solve and kept by content.  Beams of the scene count as
-// regions behind those of the mesh; they are linear or nonlinear.
+// regions behind those of the mesh; they never stiffen.
 #pragma once
 #include <functional>
 #include <map>
@@ -64,7 +64,7 @@ class Candidates {
   double refinement() const { return refinement_; }
   /// Regions that share nodes with region r.
   const std::vector<size_t>& neighbours(size_t r) const { return neighbours_[r]; }
-  /// Where one of the linear regions that share nodes has stiffening, all of these have; beams are linear at least, and never stiffen.
+  /// Where one of the linear regions that share nodes has stiffening, all of these have; beams never stiffen.
   Assignment consistent(Assignment levels) const;
 
   /// Regions that a message names in quotation marks: by their names, as parts of a body of several ("a+b"), or by a set of their nodes.

@@ -8,7 +8,7 @@
 namespace hilo::test::linear_beams_test {
 namespace {
 
-const std::string linear = "fidelity = \"linear\"\n", sharp = "[solver]\ntolerance = 1e-10\n";
+const std::string linear = "fidelity = \"linear\"\n", rigid = "fidelity = \"rigid\"\n", sharp = "[solver]\ntolerance = 1e-10\n";
 
 class LinearBeams : public BeamPlace {
  protected:
@@ -236,6 +236,53 @@ TEST_F(LinearBeams, AreTheSameOnRanksAndAfterARestart) {
   EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+// A rigid beam is the body that its sections make.  Welds of its sections and joints of a body take the same swing by steps of second
+// order, each its own.
+TEST_F(LinearBeams, RigidOnesMoveAsTheBodyTheyAre) {
+  const auto swing = [&](const std::string& name, const std::string& part, const std::string& on, const std::string& end) {
+    return solved_as(name, "gravity = [0, 0, -9.81]\n" + part + axial("revolute", "pin", "ground", on, {0, 0, 0}, {0, 1, 0}) +
+                               "[[load]]\nkind = \"torque\"\nname = \"t\"\non = \"" + end + "\"\ntorque = [0, 2, 0]\n" +
+                               probe("tip", end, "at = [1, 0, 0]") + in_time(2, 1e-3) + sharp);
+  };
+  const std::string section = plain_section(1e7, 2e7, 5e4, 5e4, "line_mass = 3\ninertia = [1e-3, 1e-3]");
+  const Results beam = swing("beam", section + beam_of("[[0, 0, 0], [1, 0, 0]]", 4, rigid), "arm.0", "arm.end"),
+                bar = swing("bar", body("bar", 3, {0.5, 0, 0}, {2e-3, 0.25 + 1e-3, 0.25 + 1e-3}), "bar", "bar");
+  for (const std::string name : {"probe/tip", "joint/pin", "energy"}) {
+    const Eigen::MatrixXd a = beam.history(name), b = bar.history(name);
+    EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-4 * b.cwiseAbs().maxCoeff()) << name;
+  }
+}
+
+// Rigid between others: as a nonlinear beam that is a million times as stiff, under loads by length, weights and a spring.
+TEST_F(LinearBeams, RigidOnesMeetLinearAndNonlinearOnes) {
+  const auto scene = [&](const std::string& of_arm) {
+    return "gravity = [0, 0, -0.1]\n" + plain_section(1e8, 2e8, 2e5, 1.5e5, "line_mass = 3\ninertia = [1e-3, 1e-3]") +
+           "[section.stiff]\nkind = \"matrix\"\nstiffness = [1e14, 1e14, 2e14]\nbending = [2e11, 2e11, 1.5e11]\nline_mass = 3\n"
+           "inertia = [1e-3, 1e-3]\n"
+           "[beam.arm]\npoints = [[0, 0, 1], [1, 0, 1], [1, 1, 1]]\ncells = [2, 3]\na = \"post.end\"\nb = \"knee\"\n" +
+           of_arm + "[beam.post]\npoints = [[0, 0, 0], [0, 0, 1]]\ncells = [3]\nsection = \"s\"\na = \"ground\"\n" + linear +
+           "[beam.leg]\npoints = [[1, 1, 0], [1, 1, 1]]\ncells = [3]\nsection = \"s\"\na = \"ground\"\nb = \"knee\"\n"
+           "[[body]]\nname = \"knee\"\nmass = 0\ncom = [1, 1, 1]\ninertia = [0, 0, 0]\n"
+           "[[load]]\nkind = \"line\"\nname = \"snow\"\non = \"arm\"\nforce_per_length = [0, 2, -1]\n"
+           "[[load]]\nkind = \"line\"\nname = \"wind\"\non = \"arm\"\nforce_per_length = [0.2, 1, 0]\nfollower = true\n"
+           "[[point_mass]]\nname = \"w\"\non = \"arm.1\"\nmass = 2\n" +
+           spring("axial", "stay", "ground", "arm.3", "at_a = [1, 0.5, 2]\nat_b = [1, 0.3333333333333333, 1]\nstiffness = 1e4") +
+           probe("p", "arm.2") + in_steps(1) + sharp;
+  };
+  const Results one = solved_as("rigid", scene("section = \"s\"\n" + rigid)), other = solved_as("stiff", scene("section = \"stiff\"\n"));
+  for (const std::string name : {"probe/p", "beam/post", "beam/leg", "spring/stay"}) {
+    const Eigen::MatrixXd a = one.history(name), b = other.history(name);
+    EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-4 * (b.rowwise() - b.row(0)).cwiseAbs().maxCoeff()) << name;
+  }
+  EXPECT_FALSE(one.file().has("/history/beam/arm")) << "what it bears is not known";
+  succeeded(mpirun(2, "hilo-solve --quiet rigid.toml -o ranks.h5", work.path()));
+  const Eigen::MatrixXd a = one.history("beam/post"), b = Results(work / "ranks.h5").history("beam/post");
+  EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-7 * a.cwiseAbs().maxCoeff());
+  succeeded(work.run("hilo-post render rigid.h5 --field von_mises --steps last -o picture.png"));
+  succeeded(work.run("hilo-post beam rigid.h5"));
+  EXPECT_EQ(work.run("hilo-post beam rigid.h5 arm").exit, 2);
+}
+
 TEST_F(LinearBeams, WhatTheyCannotBeIsRefusedByName) {
   const auto refused = [&](const std::string& scene, const std::string& why) {
     work.write("scene.toml", scene + in_steps(1));
@@ -247,9 +294,10 @@ TEST_F(LinearBeams, WhatTheyCannotBeIsRefusedByName) {
   const std::string beam = beam_of("[[0, 0, 0], [1, 0, 0]]", 2, "a = \"ground\"\n" + linear);
   refused(plain_section(1e6, 1e6, 1e3, 1e3) + beam, "needs a mass");
   refused(plain_section(1e6, 1e6, 1e3, 1e3, "line_mass = 1") + beam, "inertia about its axis");
+  refused(plain_section(1e6, 1e6, 1e3, 1e3) + beam_of("[[0, 0, 0], [1, 0, 0]]", 2, "a = \"ground\"\n" + rigid), "needs a mass");
   refused(plain_section(1e6, 1e6, 1e3, 1e3, "line_mass = 1\ninertia = [1e-3, 1e-3]") +
-              beam_of("[[0, 0, 0], [1, 0, 0]]", 2, "fidelity = \"rigid\""),
-          "rigid");
+              beam_of("[[0, 0, 0], [1, 0, 0]]", 2, "fidelity = \"stiff\""),
+          "is not known");
 }
 
 }  // namespace
