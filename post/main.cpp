@@ -20,11 +20,11 @@ int main(int argc, char** argv) {
                         "  hilo-post series run.h5 --list",
                         hilo::about({"VTK " VTK_VERSION})});
     app->require_subcommand(1);
-    const hilo::Command commands[] = {hilo::render_command(*app),   hilo::movie_command(*app),   hilo::model_command(*app),
-                                      hilo::mesh_command(*app),     hilo::gload_command(*app),   hilo::injury_command(*app),
-                                      hilo::series_command(*app),   hilo::compare_command(*app), hilo::chart_command(*app),
-                                      hilo::export_command(*app),   hilo::peak_command(*app),    hilo::response_command(*app),
-                                      hilo::quantity_command(*app), hilo::at_command(*app),      hilo::beam_command(*app)};
+    const hilo::Command commands[] = {
+        hilo::render_command(*app),   hilo::movie_command(*app),  hilo::model_command(*app),  hilo::mesh_command(*app),
+        hilo::gload_command(*app),    hilo::injury_command(*app), hilo::series_command(*app), hilo::compare_command(*app),
+        hilo::chart_command(*app),    hilo::export_command(*app), hilo::peak_command(*app),   hilo::response_command(*app),
+        hilo::quantity_command(*app), hilo::at_command(*app),     hilo::beam_command(*app),   hilo::bend_command(*app)};
     if (!hilo::parse(*app, argc, argv)) return;
     for (const auto& command : commands)
       if (command.app->parsed()) command.run();

@@ -19,7 +19,7 @@ pictures = repo / "docs/pictures/examples"
 # folder of data/: its picture in docs/pictures
 DATA = {
     "firing": "firing-soft-stress-0.0875", "tour": "tour-stress", "turret": "turret-acceleration", "loader": "loader-lifted", "crank": "crank-von_mises-0.0165",
-    "suspension": "suspension-von_mises-0.15", "arm": "arm-von_mises", "design-loop": "design-loop-stress", "frame": "frame-stress", "rotor": None, "taylor": None,
+    "suspension": "suspension-von_mises-0.15", "arm": "arm-von_mises", "design-loop": "design-loop-stress", "frame": "frame-stress", "girder": "girder-stress", "rotor": None, "taylor": None,
     "contact": "examples/contact", "advise": "advise-arm", "stability": "stability-tumbling_bar", "charts": "charts-squeezer-time",
     "scaling": "scaling-iterations"}
 # page of docs/examples: its title, and the folders of tests/verify whose scenes it shows; those of no page are on the first

@@ -15,6 +15,7 @@ struct Command {
 };
 
 Command at_command(CLI::App& app);
+Command bend_command(CLI::App& app);
 Command beam_command(CLI::App& app);
 Command render_command(CLI::App& app);
 Command movie_command(CLI::App& app);

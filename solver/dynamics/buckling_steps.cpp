@@ -175,6 +175,10 @@ class Loaded {
       throw Error(where, "the change of the forces has no potential, as under a force that follows a free end: there are no such factors",
                   "a run in time shows whether it flutters");
     std::ranges::stable_sort(out, {}, [](const FoundShape& s) { return std::abs(s.figures.factor); });
+    for (size_t k = 1; k < out.size(); ++k)  // of a factor of either sign, as in bending, the loads as given come first
+      if (const double before = out[k - 1].figures.factor, after = out[k].figures.factor;
+          before < 0 && after < -before * (1 + 1e-6) && after > 0)
+        std::swap(out[k - 1], out[k]);
     return out;
   }
 
