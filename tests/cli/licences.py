@@ -25,7 +25,7 @@ def has(name):
 
 
 found = {}
-programs = sorted((build / "bin").glob("hilo-*")) + [build / "lib/libhilo-petsc.so"]
+programs = sorted((build / "bin").glob("hilo-*")) + [build / "lib/libhilo-petsc.so", build / "lib/hilo-import-geometry"]
 for program in programs:
     if not program.is_file():
         continue

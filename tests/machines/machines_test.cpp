@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random machines against the default integrator: 418 rigid and 100 flexible runs, judged by machines/judge and not by the program.
+// Random machines against the default integrator: 418 rigid and 100 flexible runs, of these half a day, judged by machines/judge and not by
+// the program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 
 #include "folder.hpp"
 #include "machines/judge.hpp"
+#include "share.hpp"
 
 namespace hilo::test {
 namespace {
@@ -22,6 +24,7 @@ TEST_P(RandomMachines, ARunThatIsCompleteKeepsWhatIsKept) {
   const int seeds = family.flexible ? flexible_seeds : rigid_seeds;
   int stopped = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
+    if (family.flexible && !today(seed, 2)) continue;
     const Folder folder;
     const Machine m = random_machine(family.name, static_cast<std::uint64_t>(seed));
     const double h = coarse * sensible_step(m, folder.path().string());

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "dynamics/kept_run.hpp"
+#include "share.hpp"
 #include "succeeded.hpp"
 #include "verify/contact/collision.hpp"
 
@@ -376,9 +377,11 @@ std::string thrown(int seed, Case& c) {
 }
 
 // Truth: nothing acts from outside, whatever is thrown.
-TEST(Surfaces, AHundredThrowsKeepEnergyAndMomenta) {
-  int met = 0, rubbed = 0;
+TEST(Surfaces, AHundredThrowsKeepEnergyAndMomenta) {  // a quarter of them a day
+  int thrown_today = 0, met = 0, rubbed = 0;
   for (int seed = 0; seed < 100; ++seed) {
+    if (!today(seed, 4)) continue;
+    ++thrown_today;
     Case c("contact");
     const std::string options = thrown(seed, c);
     const Ran ran = c.solve("--quiet " + options, "run.h5", 0, "blocks");
@@ -390,8 +393,8 @@ TEST(Surfaces, AHundredThrowsKeepEnergyAndMomenta) {
     expect_kept(w, fmt::format("{}: {}", seed, options));
     met += w.met > 0, rubbed += e.bottomRows(1)(0, 4) > 1e-3 * w.top;
   }
-  EXPECT_GT(met, 60);
-  EXPECT_GT(rubbed, 25);
+  EXPECT_GT(met, 0.6 * thrown_today);
+  EXPECT_GT(rubbed, 0.25 * thrown_today);
 }
 
 }  // namespace

@@ -7,9 +7,9 @@
 
 #include "import/gmsh/cad.hpp"
 #include "import/imported.hpp"
-#include "import_case.hpp"
 #include "model/scaled_jacobian.hpp"
 #include "succeeded.hpp"
+#include "tools/import_case.hpp"
 
 namespace hilo::test::import_cad_test {
 namespace {
