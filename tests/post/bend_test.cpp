@@ -19,7 +19,7 @@ TEST(Bend, nodes_move_by_shapes_of_the_size_asked_for) {
   const Mesh mesh = sample::machine();
   sample::write_run(place.path(), mesh, 3);
   succeeded(place.run("hilo-post bend run.h5 --shape 1=2e-3 --shape 2=-1e-3 -o bent.h5"));
-  const Mesh bent = read_mesh_file((place / "bent.h5").string()).mesh;
+  const Mesh bent = read_mesh_file(place / "bent.h5").mesh;
   ASSERT_EQ(bent.n_nodes(), mesh.n_nodes());
   std::vector<Vec3> expected = mesh.X;
   for (const auto& [step, size] : {std::pair{"000001", 2e-3}, {"000002", -1e-3}}) {
