@@ -8,10 +8,12 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "post/run/marker.hpp"
 
 namespace hilo {
 
 Playback::Playback(RunFile& run) : run_(run), mesh_(run.mesh()) {
+  if (run.store().has("/history/path")) path_ = run.series("path");
   if (run.steps.empty())
     throw Error(run.path, "holds no field output yet", run.complete ? "see output.interval of the scene" : "the run is in progress");
 }
@@ -71,6 +73,7 @@ std::string Playback::caption(double t) const {
     return k == 0         ? "state of rest"
            : run_.buckles ? fmt::format("shape {}, {:.5g} of the loads", k, run_.shapes[k])
                           : fmt::format("mode {}, {:.5g} Hz", k, run_.shapes[k]);
+  if (path_) return fmt::format("state {:.4g}, {:.4g} of the loads", t, at_time(*path_, t).front());
   return last() < 1 ? fmt::format("t = {:.3f} ms", 1e3 * t) : fmt::format("t = {:.4f} s", t);
 }
 

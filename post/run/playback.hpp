@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "base/math.hpp"
@@ -24,7 +25,7 @@ class Playback {
   bool has_modes() const { return !run_.shapes.empty(); }
   double first() const { return run_.steps[has_modes() && run_.steps.size() > 1 ? 1 : 0].t; }  // [s]
   double last() const { return run_.steps.back().t + (has_modes() ? 1 - 1e-6 : 0); }
-  /// "t = 3.200 ms", or "mode 3, 51.2 Hz".
+  /// "t = 3.200 ms", "mode 3, 51.2 Hz", or "state 7, 0.35 of the loads" of a path.
   std::string caption(double t) const;
   /// Current positions of all nodes at a time within the run  (n_nodes)  [m].
   const std::vector<Vec3>& positions(double t);
@@ -49,8 +50,9 @@ class Playback {
   };
   RunFile& run_;
   const Mesh& mesh_;
-  std::vector<Kept> kept_;  // of the two outputs last asked for
-  std::vector<Vec3> x_;     // positions at x_time_
+  std::optional<Series> path_;  // share of the loads, its rise, eigenvalues below zero
+  std::vector<Kept> kept_;      // of the two outputs last asked for
+  std::vector<Vec3> x_;         // positions at x_time_
   double x_time_ = std::numeric_limits<double>::quiet_NaN();
 };
 
