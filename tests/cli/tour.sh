@@ -14,6 +14,7 @@ cd "$folder"
 fail() { echo "tour: $*" >&2; exit 1; }
 awk '/^```sh$/ {on = 1; next} /^```$/ {on = 0} on' "$repo/docs/tour.md" "$repo/docs/tour-assembly.md" > blocks.sh
 awk '/^```python$/ {on = 1; next} /^```$/ {on = 0} on' "$repo/docs/tour.md" > read.py
+sed -i 's/hilo-post movie [^ ]*/& --fps 4/' blocks.sh  # few pictures, or they are most of the time
 bash -euo pipefail blocks.sh | tee said.txt
 /usr/bin/python3 -c 'import h5py' || fail "the Python block of the tour needs h5py (apt install python3-h5py)"
 /usr/bin/python3 read.py > read.txt

@@ -33,6 +33,7 @@ void start() {
   static const bool once = [] {
     int runs = 0;
     MPI_Initialized(&runs);
+    if (!runs) setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);  // or a run alone starts a daemon, for a quarter of a second
     PetscOptionsSetValue(nullptr, "-skip_petscrc", nullptr);
     PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr);
     if (PetscInitializeNoArguments()) throw Error("PETSc", "cannot start", "", Exit::resources);
