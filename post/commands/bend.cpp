@@ -2,6 +2,7 @@
 // hilo-post bend: the mesh of a run with its nodes moved by shapes of the run, as a mesh to run again: a structure that is not perfect.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -60,6 +61,10 @@ void run(const BendOptions& o) {
     if (!(largest > 0)) throw Error(o.run, fmt::format("nothing moves in step {}", number), "steps of shapes begin with 1", Exit::usage);
     way += size / largest * shape;
   }
+  Eigen::AlignedBox3d box;
+  for (const Vec3& X : file.mesh().X) box.extend(X);
+  if (const double most = way.colwise().norm().maxCoeff(), large = box.diagonal().norm(); most > 0.1 * large)
+    warn("--shape", fmt::format("nodes move by {:.3g} m, and the mesh is {:.3g} m long: lengths are in m", most, large));
 
   MeshFile bent = read_mesh_file(holder(file.store(), "/mesh"));  // without the sets of the scene
   Mesh& mesh = bent.mesh;
@@ -95,9 +100,8 @@ Command bend_command(CLI::App& app) {
       ->allow_extra_args(false)
       ->take_all();
   sub->add_option("-o,--output", o->output, "the mesh.h5 to write; sets, regions and blocks stay; tag it again")->required();
-  example(
-      *sub,
-      "  hilo-post bend shapes.h5 --shape 1=0.5e-3 -o bent.h5\n  hilo-solve scene.toml bent.h5 --set 'time.analysis=\"path\"' -o path.h5");
+  example(*sub,
+          "  hilo-post bend modes.h5 --shape 1=0.5e-3 -o bent.h5\n  hilo-post bend modes.h5 --shape 1=0.5e-3 --shape 2=-0.1e-3 -o bent.h5");
   return {sub, [o] { run(*o); }};
 }
 
