@@ -162,8 +162,10 @@ struct Frame {
     tube.C.diagonal() << 2e7, 2e7, 1e8, 5e4, 5e4, 4e4;
     tube.mass = 4, tube.J11 = tube.J22 = 2e-3;
     Beams& beams = system.add<Beams>(system);
+    SectionsAlong along;
+    along.fill(tube);
     for (int k = 0; k < n; ++k)
-      beams.add_cell({system.start.c[k], system.start.R[k], k}, {system.start.c[k + 1], system.start.R[k + 1], k + 1}, tube, 0, 0);
+      beams.add_cell({system.start.c[k], system.start.R[k], k}, {system.start.c[k + 1], system.start.R[k + 1], k + 1}, along, 0, 0);
     system.prepare();
   }
 };

@@ -55,6 +55,7 @@ class UpperBlocks final : public FlexibleMatrix {
     check(MatSetOption(A_, MAT_SPD, PETSC_TRUE));
   }
   Mat mat() const override { return A_; }
+  void for_each_row(const Row&) const override { throw Error("", "rows of an upper triangle are not whole", "", Exit::fault); }
   PetscInt n_owned() const override { return n_owned_; }
   double bytes() const override {
     MatInfo info;
