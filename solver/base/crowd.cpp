@@ -2,36 +2,23 @@
 #include "base/crowd.hpp"
 
 #include <sched.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <ctime>
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
 
 namespace {
 std::atomic<bool> sleeps = false;
-
-/// One more time that a rank that waits has asked for its message.  It asks every microsecond; after a gap another wait has begun.  Linux
-/// makes each sleep 50 us longer; woken sooner, a rank that waits would take a third of a core.
-void ask_again() {
-  using namespace std::chrono;
-  thread_local steady_clock::time_point began, last;
-  const steady_clock::time_point now = steady_clock::now();
-  if (now - last > microseconds(20)) began = now;
-  if (sleeps.load(std::memory_order_relaxed) || now - began > microseconds(100)) {
-    const timespec pause{0, 20000};
-    nanosleep(&pause, nullptr);
-  }
-  last = steady_clock::now();
-}
-
 }  // namespace
 
 /// In the place of libc's, for MPI's calls as well.
 extern "C" __attribute__((visibility("default"))) int sched_yield() noexcept {
-  ask_again();
-  return 0;
+  if (!sleeps.load(std::memory_order_relaxed)) return static_cast<int>(syscall(SYS_sched_yield));
+  const timespec pause{0, 20000};
+  return nanosleep(&pause, nullptr);
 }
 
 namespace hilo {

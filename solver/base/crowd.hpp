@@ -12,10 +12,9 @@ struct Crowd {
 
 /// Collective.
 Crowd crowd(const Comm& comm);
-/// From now on a rank that waits sleeps at once: for more ranks than cores.  MPI asks again and again whether a message has come, and Open
-/// MPI calls sched_yield in between where it has been given more ranks than cores, or is told to (mpi_yield_when_idle).  Linux mostly gives
-/// the core back at once, to ranks that have nothing to do: three ranks beside a busy process on two cores took more than 60 s for what
-/// takes 8 s with sleep.  Without this call a rank sleeps that has waited for 0.1 ms: its core may be another program's too.
+/// From now on a rank that waits sleeps: for more ranks than cores.  MPI asks again and again whether a message has come, and Open MPI
+/// calls sched_yield in between where it has been given more ranks than cores.  Linux mostly gives the core back at once, to ranks that
+/// have nothing to do: three ranks beside a busy process on two cores took more than 60 s for what takes 8 s with sleep.
 void sleep_while_waiting();
 
 }  // namespace hilo
