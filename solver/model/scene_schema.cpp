@@ -134,8 +134,7 @@ std::vector<KindSchema> make_schema() {
         {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)},
         {"fidelity", text, "", "nonlinear",
          "nonlinear; linear: beams that hang together by `a` and `b` are mean axes and modes, as linear regions are; rigid: they are one "
-         "body, "
-         "and bear what nothing tells"},
+         "body, and what they bear is not known"},
         {"modes", number, "", "40", "vibration modes of a linear beam, at most; static ones are there besides", at_least(0)},
         {"up_to", number, "Hz", "", "vibration modes of a linear beam up to this frequency, as of regions", above(0)},
         {"modal_damping", number, "1", "0", "ratio to the critical damping of the modes of a linear beam, as of regions", at_least(0)}}});
