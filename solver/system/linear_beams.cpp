@@ -207,7 +207,8 @@ void LinearBeams::carry(Config& q) const {
     const Modes& m = points_.modes[of.modes];
     Eigen::Matrix<double, Eigen::Dynamic, 3> Y(of.motions.cols(), 3);
     for (Index j = 0; j < Y.rows(); j += 3) Y.middleRows<3>(j) = q.Y[static_cast<size_t>(3 * m.first + j / 3)].transpose();
-    const Eigen::Matrix<double, Eigen::Dynamic, 3> moved = of.motions * Y;
+    Eigen::Matrix<double, Eigen::Dynamic, 3> moved(of.motions.rows(), 3);
+    for (int i = 0; i < 3; ++i) moved.col(i).noalias() = of.motions * Y.col(i);  // a product of matrices would copy the motions each time
     for (size_t k = 0; k < of.bodies.size(); ++k) {
       const int b = of.bodies[k];
       const auto own = moved.middleRows<4>(4 * static_cast<Index>(k));
