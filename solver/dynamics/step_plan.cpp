@@ -32,11 +32,10 @@ constexpr double starting_steps = 6;  // until steps have grown to the longest
 constexpr double least_step = 1e-14;  // of the length: smaller local errors of second order are round-off
 constexpr double least_share = 1e-7;  // of the length: demands of methods above second order below it ask for round-off
 
-/// Gauss is for rigid bodies here, serial.  Forces with kinks spoil any order above the second, and so do its dampers, which see the mean
-/// rate of a step.
+/// Gauss is for rigid bodies here, serial.  Forces with kinks spoil any order above the second.
 bool gauss_serves(const System& system) {
   if (system.comm->size > 1 || system.traits().deforms || system.layout.map.n_global > 1000) return false;
-  return springs_conserve(system);
+  return springs_are_smooth(system);
 }
 
 /// A demand to begin with.  Second order: the sum of local errors is what is asked.  Higher orders: a coarse one, since what the next pass

@@ -6,16 +6,14 @@
 
 namespace hilo {
 
-void OnCoordinates::spread(const Values& e0, const Values& e1, const Response& along, Response& out) const {
-  RowLaw::Gradient g, at_end;
-  coordinates_->gradient(e0, e1, g);
-  coordinates_->gradient(e1, e1, at_end);
+/// Forces along coordinates as forces along measures; `by_end`: slopes of the coordinates at the end by the measures there.
+void OnCoordinates::spread(const RowLaw::Gradient& g, const RowLaw::Gradient& by_end, const Response& along, Response& out) const {
   const int n = coordinates_->n_rows();
   out.energy += along.energy, out.dissipated += along.dissipated, out.supplied += along.supplied;
   for (int r = 0; r < n; ++r) {
     Values change{};  // of along.s[r] by each measure at the end
     for (int k = 0; k < n; ++k)
-      for (int j = 0; j < max_measures; ++j) change[j] += along.D[r][k] * at_end.d[k][j];
+      for (int j = 0; j < max_measures; ++j) change[j] += along.D[r][k] * by_end.d[k][j];
     for (int i = 0; i < max_measures; ++i) {
       const double d = g.d[r][i];
       out.s[i] += along.s[r] * d;
@@ -30,15 +28,32 @@ void OnCoordinates::elastic(const Values& e0, const Values& e1, Response& out) c
   coordinates_->values(e0, x0.data()), coordinates_->values(e1, x1.data());
   Response along;
   law_->elastic(x0, x1, along);
-  spread(e0, e1, along, out);
+  RowLaw::Gradient g, at_end;
+  coordinates_->gradient(e0, e1, g), coordinates_->gradient(e1, e1, at_end);
+  spread(g, at_end, along, out);
 }
 
 void OnCoordinates::viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const {
   Values x0{}, x1{};
-  coordinates_->values(r0, x0.data()), coordinates_->values(r1, x1.data());
+  RowLaw::Gradient g, by_end;
+  if (step.at) {
+    coordinates_->values(*step.at, x0.data()), x1 = x0;
+    coordinates_->gradient(*step.at, *step.at, g), by_end = g;
+    for (int r = 0; r < coordinates_->n_rows(); ++r)
+      for (int i = 0; i < max_measures; ++i) {
+        const double way = r1[i] - r0[i];
+        x0[r] -= g.d[r][i] * way / 2, x1[r] += g.d[r][i] * way / 2;
+        for (int j = 0; j < max_measures; ++j) by_end.d[r][j] += way * g.D[r][i][j];  // the instant is in the middle of r0 and r1
+      }
+  } else {
+    coordinates_->values(r0, x0.data()), coordinates_->values(r1, x1.data());
+    coordinates_->gradient(r0, r1, g), coordinates_->gradient(r1, r1, by_end);
+  }
+  Interval along_x = step;
+  along_x.at = nullptr;
   Response along;
-  law_->viscous(x0, x1, step, along);
-  spread(r0, r1, along, out);
+  law_->viscous(x0, x1, along_x, along);
+  spread(g, by_end, along, out);
 }
 
 void OnCoordinates::commit(const Values& e, const Values& rate) {
@@ -87,6 +102,7 @@ struct Linear final : SpringLaw {
     }
   }
   bool conserves() const override { return c == Values{}; }
+  bool is_smooth() const override { return true; }
 };
 
 }  // namespace

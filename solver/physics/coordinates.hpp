@@ -3,6 +3,7 @@
 //
 // With the discrete gradient d of a coordinate, d.(e1 - e0) = x1 - x0, a force f along it acts as s = f d and does the work f (x1 - x0)
 // of the step exactly.  So a law written for x keeps its energy statement: a potential stays conserved, friction stays dissipative.
+// At an instant d is the gradient there, and dx/dt = d.de/dt: methods of high order keep their order with dampers.
 #pragma once
 #include <limits>
 #include <memory>
@@ -24,10 +25,11 @@ class OnCoordinates final : public SpringLaw {
   bool needs_rate() const override { return law_->needs_rate(); }
   void archive(Archive& a) override { coordinates_->archive(a), law_->archive(a); }
   bool conserves() const override { return law_->conserves(); }
+  bool is_smooth() const override { return law_->is_smooth(); }
   std::string beyond(const Values& e) const override { return coordinates_->beyond(e); }
 
  private:
-  void spread(const Values& e0, const Values& e1, const Response& along, Response& out) const;
+  void spread(const RowLaw::Gradient& g, const RowLaw::Gradient& by_end, const Response& along, Response& out) const;
   std::unique_ptr<RowLaw> coordinates_;
   std::unique_ptr<SpringLaw> law_;
 };

@@ -22,6 +22,8 @@ struct Interval {
   double h;           // [s]
   double factor = 1;  // of a motor's history
   double load = 0;    // what presses the surfaces of a joint together [N]
+  /// Measures at the instant whose rates (r1 - r0)/h are; null: rates are means over a step from r0 to r1.
+  const std::array<double, max_measures>* at = nullptr;
 };
 
 /// The law of a spring.  Elastic forces see (e0, e1), rate forces (r0, r1) over h.
@@ -38,6 +40,8 @@ class SpringLaw {
   virtual void archive(Archive&) {}
   /// Whether it is a potential and nothing else.
   virtual bool conserves() const { return false; }
+  /// Whether forces at an instant have no kinks, and rate forces are those of its rates: what methods of high order ask for.
+  virtual bool is_smooth() const { return conserves(); }
   /// What e has passed, beyond which the law is not meant, or nothing: "half a turn".
   virtual std::string beyond(const Values& /*e*/) const { return {}; }
 };

@@ -40,7 +40,8 @@ void Springs::number(Layout& layout) {
 }
 
 void Springs::viscous(const Spring& c, const Stage& s, std::span<const double> lambda, Response& out) const {
-  c.law->viscous(c.values(*s.w0), c.values(*s.w1), interval(c, s, lambda), out);
+  const SpringLaw::Values at = c.values(*s.left);
+  c.law->viscous(c.values(*s.w0), c.values(*s.w1), interval(c, s, at, lambda), out);
 }
 
 void Springs::add_energy(const Config& q, const Config&, Energy& sum) const {
@@ -154,8 +155,8 @@ void Springs::add_taken(std::span<const int> group, const Stage& s, std::span<co
     }
 }
 
-bool springs_conserve(const System& system) {
-  return std::ranges::all_of(system.part<Springs>().list, [](const Spring& c) { return c.law->conserves(); });
+bool springs_are_smooth(const System& system) {
+  return std::ranges::all_of(system.part<Springs>().list, [](const Spring& c) { return c.law->is_smooth(); });
 }
 
 }  // namespace hilo

@@ -37,11 +37,13 @@ void spring_elastic(const Spring& c, const Stage& s, Response& out) {
     for (double& d : row) d *= 2 * s.weight;
 }
 
-Interval Springs::interval(const Spring& c, const Stage& s, std::span<const double> lambda, double* slope) const {
+Interval Springs::interval(const Spring& c, const Stage& s, const SpringLaw::Values& at, std::span<const double> lambda,
+                           double* slope) const {
   Interval step{s.h};
   for (const Carrier& end : c.ends())
     if (s.tempo && end.body >= 0 && points_.body_block[end.body] >= 0) step.h = s.h / s.tempo[end.body];
   if (c.history) step.factor = s.t1 > s.t0 ? c.history->mean(s.t0, s.t1) : (*c.history)(s.t0);
+  if (!s.conserving()) step.at = &at;
   if (c.pressing.joint < 0) return step;
   const double* multiplier = lambda.data() + joints_.row(c.pressing.joint);
   for (const int r : c.pressing.rows) step.load += multiplier[r] * multiplier[r];
@@ -66,7 +68,8 @@ void Springs::evaluate(Pass& p) const {
     double force[max_measures];
     for (int m = 0; m < n; ++m) force[m] = elastic.s[m];
     if (s.h > 0) {
-      spring_viscous(c, s, interval(c, s, p.lambda, slope), viscous, before);
+      const SpringLaw::Values at = c.values(*s.left);
+      spring_viscous(c, s, interval(c, s, at, p.lambda, slope), viscous, before);
       for (int m = 0; m < n; ++m) force[m] += viscous.s[m];
     }
     add_force(p, c, left, force);

@@ -28,8 +28,10 @@ class Springs final : public Contribution, public Equations, public Stateful, pu
   void add_taken(std::span<const int> group, const Stage& s, std::span<const double> lambda, std::span<double> sum) const override;
 
  private:
-  /// What the rate forces of a spring may ask of a stage; `slope`, when given, receives d load / d multiplier for its load rows.
-  Interval interval(const Spring& c, const Stage& s, std::span<const double> lambda, double* slope = nullptr) const;
+  /// What the rate forces of a spring may ask of a stage, `at` its measures at `left`; `slope`, when given, receives d load / d multiplier
+  /// for its load rows.
+  Interval interval(const Spring& c, const Stage& s, const SpringLaw::Values& at, std::span<const double> lambda,
+                    double* slope = nullptr) const;
   /// Rate forces of a stage, added to `out`.
   void viscous(const Spring& c, const Stage& s, std::span<const double> lambda, Response& out) const;
   const Points& points_;
@@ -43,8 +45,8 @@ class Springs final : public Contribution, public Equations, public Stateful, pu
 /// Elastic response of a spring at a stage, D by its measures at e1.
 void spring_elastic(const Spring& c, const Stage& s, Response& out);
 
-/// Whether the forces of all springs keep energy, without dampers and kinks.
-bool springs_conserve(const System& system);
+/// Whether the forces of all springs and dampers are without kinks.
+bool springs_are_smooth(const System& system);
 /// Whether there are springs or compliant joints, on which bodies may vibrate.
 bool is_sprung(const System& system);
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Damping: what the matrix of Newton forgets costs iterations, and what the balance forgets looks like energy from nowhere.
+#include <fmt/format.h>
+
 #include "dynamics/scenes.hpp"
 #include "model/scene.hpp"
 #include "succeeded.hpp"
@@ -83,6 +85,82 @@ TEST(Damped, WhatAFlexibleRegionTakesIsInTheBalanceOfEveryMethod) {
     for (const std::string& method : choices("time", "integrator"))
       if (method != "gauss" || std::string(level) == "linear")
         expect_balance(w, std::string("scene.toml ") + level + ".h5", method, "4e-3", "1e-3");
+  }
+}
+
+/// A rod on a hinge along y, with a torsion damper, a bushing and a damper between points, 1 m from the hinge and 1 m above it: turn and
+/// rate by RK4.
+struct BrakedRod {
+  static constexpr double m = 2, L = 0.5, J = 0.2, k = 3, c = 0.4, k_bush = 2, c_bush = 0.3, k_line = 20, c_line = 6, free = 1.2;
+  static double acceleration(double turn, double rate) {
+    const double x = std::cos(turn), z = -std::sin(turn), length = std::hypot(x, z - 1), dx = z * rate, dz = -x * rate;
+    const double pull = k_line * (length - free) + c_line * (x * dx + (z - 1) * dz) / length;
+    const double moment = (z * -x - x * (1 - z)) / length * pull;  // z Fx - x Fz
+    return (m * 9.81 * L * std::cos(turn) - (k + k_bush) * turn - (c + c_bush) * rate + moment) / (J + m * L * L);
+  }
+  static std::array<double, 2> at(double t, int n) {
+    double turn = 0, rate = 0;
+    const double h = t / n;
+    for (int i = 0; i < n; ++i) {
+      const double a1 = acceleration(turn, rate), r2 = rate + h / 2 * a1, a2 = acceleration(turn + h / 2 * rate, r2),
+                   r3 = rate + h / 2 * a2, a3 = acceleration(turn + h / 2 * r2, r3), r4 = rate + h * a3,
+                   a4 = acceleration(turn + h * r3, r4);
+      turn += h / 6 * (rate + 2 * r2 + 2 * r3 + r4), rate += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+    }
+    return {turn, rate};
+  }
+  static std::string scene() {
+    return "gravity = [0, 0, -9.81]\n" + body("rod", m, {L, 0, 0}, {J, J, J}) +
+           joint("revolute", "hinge", "ground", "rod", Vec3::Zero(), "axis = [0, 1, 0]\n") +
+           fmt::format(
+               "[[spring]]\nkind = \"torsion\"\nname = \"brake\"\na = \"ground\"\nb = \"rod\"\naxis = [0, 1, 0]\nstiffness = {0}\n"
+               "damping = {1}\n[[spring]]\nkind = \"bushing\"\nname = \"bush\"\nb = \"rod\"\nat = [0, 0, 0]\n"
+               "angular_stiffness = [{2}, {2}, {2}]\nangular_damping = [{3}, {3}, {3}]\n[[spring]]\nkind = \"axial\"\n"
+               "name = \"line\"\na = \"ground\"\nb = \"rod\"\nat_a = [0, 0, 1]\nat_b = [1, 0, 0]\nstiffness = {4}\ndamping = {5}\n"
+               "length = {6}\n",
+               k, c, k_bush, c_bush, k_line, c_line, free) +
+           "[[probe]]\nname = \"tip\"\non = \"rod\"\nat = [1, 0, 0]\n[time]\nend = 0.8\nstep = 0.02\n";
+  }
+};
+
+// A damper at an instant sees the rate of that instant, also where its measure is a length or an angle.
+TEST(Damped, MethodsOfHighOrderKeepTheirOrder) {
+  const Workplace w;
+  w.write("scene.toml", BrakedRod::scene());
+  const auto [turn, rate] = BrakedRod::at(0.8, 100000);
+  const double acceleration = BrakedRod::acceleration(turn, rate);
+  const Vec3 x(std::cos(turn), 0, -std::sin(turn)), across(-std::sin(turn), 0, -std::cos(turn));
+  const auto off = [&](const std::string& method, const char* step) -> std::array<double, 3> {
+    succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 --set solver.tolerance=1e-12 --set time.step=" + std::string(step) + " " +
+                    integrator(method)));
+    const auto tip = Results(w / "run.h5").at("probe/tip", 0.8);
+    return {(tip.head<3>() - x).norm(), (tip.segment<3>(3) - rate * across).norm(),
+            (tip.tail<3>() - acceleration * across + rate * rate * x).norm()};
+  };
+  const auto gauss = off("gauss", "0.08"), finer = off("gauss", "0.04");
+  EXPECT_LT(gauss[0], 1e-8);
+  for (const int k : {1, 2}) EXPECT_GT(std::log2(gauss[k] / finer[k]), 5.3) << k << ": " << gauss[k] << " " << finer[k];
+  const double radau = off("radau", "0.04")[0], radau_finer = off("radau", "0.02")[0];
+  EXPECT_GT(std::log2(radau / radau_finer), 4.5) << radau << " " << radau_finer;
+}
+
+// Truth: gauss in steps a thirty-second as long.  The strains of a beam are no parabolas of its positions either.
+TEST(Damped, MethodsOfHighOrderKeepTheirOrderWithBeams) {
+  const Workplace w;
+  w.write(
+      "scene.toml",
+      "gravity = [0, 0, -9.81]\n[material.soft]\nE = 1e7\nnu = 0.3\ndensity = 1000\n[section.square]\nkind = \"rectangle\"\nwidth = 0.1\n"
+      "height = 0.1\n[beam.arm]\npoints = [[0, 0, 0], [1, 0, 0]]\ncells = [1]\nsection = \"square\"\nmaterial = \"soft\"\ndamping = 0.02\n"
+      "a = \"ground\"\n[[probe]]\nname = \"tip\"\non = \"arm.1\"\n[time]\nend = 0.32\nstep = 0.01\n");
+  const auto tip = [&](const std::string& method, const char* step) {
+    succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 --set solver.tolerance=1e-12 --set time.step=" + std::string(step) + " " +
+                    integrator(method)));
+    return Vec3(Results(w / "run.h5").at("probe/tip", 0.32).head<3>());
+  };
+  const Vec3 truth = tip("gauss", "0.00125");
+  for (const auto& [method, order] : {std::pair{"gauss", 4.5}, {"radau", 3.5}}) {
+    const double coarse = (tip(method, "0.04") - truth).norm(), fine = (tip(method, "0.02") - truth).norm();
+    EXPECT_GT(std::log2(coarse / fine), order) << method << " " << coarse << " " << fine;
   }
 }
 

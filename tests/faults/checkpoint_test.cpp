@@ -125,9 +125,10 @@ interval = 0.5
   succeeded(work.run(run + "-o whole.h5 --checkpoint 150steps"));
   succeeded(work.run(run + "-o none.h5 --checkpoint none"));
   // a crash: no checkpoint at the stop, as after kill -9
-  const auto killed = work.run(run +
-                               "--checkpoint 150steps & p=$!; for k in $(seq 3000); do [ -e run.checkpoint-1.h5 ] && break; sleep 0.01; "
-                               "done; kill -9 $p; wait $p; [ $? = 137 ]");
+  const auto killed = work.run(
+      run +
+      "--checkpoint 150steps & p=$!; for k in $(seq 3000); do [ -e run.checkpoint-1.h5 ] && [ -e run.checkpoint.h5 ] && break; sleep 0.01; "
+      "done; kill -9 $p; wait $p; [ $? = 137 ]");
   ASSERT_EQ(killed.exit, 0) << "the run ended before it was killed\n" << killed.err;
   const auto all = [&](const std::string& file) {
     std::map<std::string, std::vector<double>> found;
