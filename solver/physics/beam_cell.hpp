@@ -266,16 +266,8 @@ inline void run(const ArcCall& call) {
         slope *= 2 * w;  // so far the derivative by the second argument alone
       }
       T recalled[n_strains];
-      const bool recalls = pair.past[0] != nullptr || pair.at_left;
-      if (pair.at_left) {
-        Measures<T> way = m1;
-        for (int i = 0; i < 3; ++i) way.a[i] -= m0.a[i], way.p[i] -= m0.p[i];
-        way.t -= m0.t;
-        T x[n_strains], ahead[n_strains];
-        m0 = m1 = measures_of(left.y);
-        strain(m0, x), strain_ahead(m0, way, ahead);
-        for (int i = 0; i < n_strains; ++i) recalled[i] = x[i] - ahead[i];
-      } else if (recalls) {
+      const bool recalls = pair.past[0] != nullptr;
+      if (recalls) {
         T x[3][n_strains];
         for (int k = 0; k < 3; ++k) {
           SectionPoints<T> then;
@@ -286,7 +278,7 @@ inline void run(const ArcCall& call) {
       }
       const T rate = pair.by_beta * cell.beta + pair.kappa;
       Resultants<T> r;
-      const bool ahead = foresees && pair.q0 == pair.q1 && !pair.at_left;
+      const bool ahead = foresees && pair.q0 == pair.q1;
       respond(cell.law, m0, m1, pair.elastic, rate, recalls ? recalled : nullptr, static_cast<const T*>(nullptr), r, s_pair,
               K && !ahead ? D_pair : nullptr);
       if (ahead) {

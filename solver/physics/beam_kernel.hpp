@@ -12,7 +12,6 @@ struct ArcCall {
     const double *q0 = nullptr, *q1 = nullptr;  // poses
     double elastic = 0, kappa = 0;              // shares of the elastic forces, and of C* times the change of strain
     double by_beta = 0;                         // of beta, beside kappa [1/s]
-    bool at_left = false;                       // the change of strain is that of its rate at `left`
     double slope = 1;                           // d q1 / d end
     bool acts = true;                           // false: in the tangent alone
     bool mean = false;                          // the forces at the mean of the measures, by the share `weight` of q1

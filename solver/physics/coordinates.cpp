@@ -6,21 +6,24 @@
 
 namespace hilo {
 
-/// Forces along coordinates as forces along measures; `by_end`: slopes of the coordinates at the end by the measures there.
-void OnCoordinates::spread(const RowLaw::Gradient& g, const RowLaw::Gradient& by_end, const Response& along, Response& out) const {
-  const int n = coordinates_->n_rows();
+/// Forces along coordinates as forces along measures; `change`: of these forces by each measure at the end.
+void OnCoordinates::spread(const RowLaw::Gradient& g, const Response& along, const Slopes& change, Response& out) const {
   out.energy += along.energy, out.dissipated += along.dissipated, out.supplied += along.supplied;
-  for (int r = 0; r < n; ++r) {
-    Values change{};  // of along.s[r] by each measure at the end
-    for (int k = 0; k < n; ++k)
-      for (int j = 0; j < max_measures; ++j) change[j] += along.D[r][k] * by_end.d[k][j];
+  for (int r = 0; r < coordinates_->n_rows(); ++r)
     for (int i = 0; i < max_measures; ++i) {
       const double d = g.d[r][i];
       out.s[i] += along.s[r] * d;
       out.by_load[i] += along.by_load[r] * d;
-      for (int j = 0; j < max_measures; ++j) out.D[i][j] += along.s[r] * g.D[r][i][j] + d * change[j];
+      for (int j = 0; j < max_measures; ++j) out.D[i][j] += along.s[r] * g.D[r][i][j] + d * change[r][j];
     }
-  }
+}
+
+/// D dx/de, added.
+void OnCoordinates::add_change(const std::array<Values, max_measures>& D, const Slopes& coordinates_by_measures, Slopes& change) const {
+  const int n = coordinates_->n_rows();
+  for (int r = 0; r < n; ++r)
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < max_measures; ++j) change[r][j] += D[r][k] * coordinates_by_measures[k][j];
 }
 
 void OnCoordinates::elastic(const Values& e0, const Values& e1, Response& out) const {
@@ -28,32 +31,47 @@ void OnCoordinates::elastic(const Values& e0, const Values& e1, Response& out) c
   coordinates_->values(e0, x0.data()), coordinates_->values(e1, x1.data());
   Response along;
   law_->elastic(x0, x1, along);
+  spread_step(e0, e1, along, out);
+}
+
+void OnCoordinates::spread_step(const Values& e0, const Values& e1, const Response& along, Response& out) const {
   RowLaw::Gradient g, at_end;
   coordinates_->gradient(e0, e1, g), coordinates_->gradient(e1, e1, at_end);
-  spread(g, at_end, along, out);
+  Slopes change{};
+  add_change(along.D, at_end.d, change);
+  spread(g, along, change, out);
 }
 
 void OnCoordinates::viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const {
   Values x0{}, x1{};
-  RowLaw::Gradient g, by_end;
-  if (step.at) {
-    coordinates_->values(*step.at, x0.data()), x1 = x0;
-    coordinates_->gradient(*step.at, *step.at, g), by_end = g;
-    for (int r = 0; r < coordinates_->n_rows(); ++r)
-      for (int i = 0; i < max_measures; ++i) {
-        const double way = r1[i] - r0[i];
-        x0[r] -= g.d[r][i] * way / 2, x1[r] += g.d[r][i] * way / 2;
-        for (int j = 0; j < max_measures; ++j) by_end.d[r][j] += way * g.D[r][i][j];  // the instant is in the middle of r0 and r1
-      }
-  } else {
-    coordinates_->values(r0, x0.data()), coordinates_->values(r1, x1.data());
-    coordinates_->gradient(r0, r1, g), coordinates_->gradient(r1, r1, by_end);
-  }
-  Interval along_x = step;
-  along_x.at = nullptr;
   Response along;
-  law_->viscous(x0, x1, along_x, along);
-  spread(g, by_end, along, out);
+  if (!step.is_instant) {
+    coordinates_->values(r0, x0.data()), coordinates_->values(r1, x1.data());
+    law_->viscous(x0, x1, step, along);
+    return spread_step(r0, r1, along, out);
+  }
+  Values at{};
+  for (int i = 0; i < max_measures; ++i) at[i] = (r0[i] + r1[i]) / 2;
+  RowLaw::Gradient g;
+  coordinates_->gradient(at, at, g);
+  coordinates_->values(at, x0.data()), x1 = x0;
+  Slopes turn{};  // of half the way of the coordinates, as their gradients turn
+  for (int r = 0; r < coordinates_->n_rows(); ++r)
+    for (int i = 0; i < max_measures; ++i) {
+      const double way = r1[i] - r0[i];
+      x0[r] -= g.d[r][i] * way / 2, x1[r] += g.d[r][i] * way / 2;
+      for (int j = 0; j < max_measures; ++j) turn[r][j] += g.D[r][i][j] * way / 2;
+    }
+  Interval back = step;
+  back.h = -step.h;
+  Response other;  // D by x0
+  law_->viscous(x0, x1, step, along), law_->viscous(x1, x0, back, other);
+  Slopes change{};
+  auto both = along.D;
+  for (int r = 0; r < max_measures; ++r)
+    for (int k = 0; k < max_measures; ++k) both[r][k] -= other.D[r][k];
+  add_change(along.D, g.d, change), add_change(both, turn, change);
+  spread(g, along, change, out);
 }
 
 void OnCoordinates::commit(const Values& e, const Values& rate) {

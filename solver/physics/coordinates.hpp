@@ -29,7 +29,10 @@ class OnCoordinates final : public SpringLaw {
   std::string beyond(const Values& e) const override { return coordinates_->beyond(e); }
 
  private:
-  void spread(const RowLaw::Gradient& g, const RowLaw::Gradient& by_end, const Response& along, Response& out) const;
+  using Slopes = std::array<Values, max_rows>;  // of coordinates, or forces along them, by the measures
+  void spread(const RowLaw::Gradient& g, const Response& along, const Slopes& change, Response& out) const;
+  void spread_step(const Values& e0, const Values& e1, const Response& along, Response& out) const;
+  void add_change(const std::array<Values, max_measures>& D, const Slopes& coordinates_by_measures, Slopes& change) const;
   std::unique_ptr<RowLaw> coordinates_;
   std::unique_ptr<SpringLaw> law_;
 };

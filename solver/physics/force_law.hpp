@@ -22,8 +22,7 @@ struct Interval {
   double h;           // [s]
   double factor = 1;  // of a motor's history
   double load = 0;    // what presses the surfaces of a joint together [N]
-  /// Measures at the instant whose rates (r1 - r0)/h are; null: rates are means over a step from r0 to r1.
-  const std::array<double, max_measures>* at = nullptr;
+  bool is_instant = false;  // rates are those half-way between r0 and r1, and not means over a step
 };
 
 /// The law of a spring.  Elastic forces see (e0, e1), rate forces (r0, r1) over h.

@@ -36,19 +36,6 @@ arc::SectionPoints<double> points_of(const BeamCell& cell, const Config& q) {
 arc::Measures<double> measures_of(const BeamCell& cell, const Config& q) { return arc::measures_of(points_of(cell, q).y); }
 ArcStrain strain_of(const BeamCell& cell, const Config& q) { return arc_strain(measures_of(cell, q)); }
 
-/// What rate forces see of the strains over the time between w0 and w1: their change over a step, at an instant that of their rates there.
-ArcStrain strain_rate(const BeamCell& cell, const Stage& s) {
-  const arc::Measures<double> m0 = measures_of(cell, *s.w0), m1 = measures_of(cell, *s.w1);
-  if (s.conserving()) return arc_strain(m1) - arc_strain(m0);
-  const arc::Measures<double> at = measures_of(cell, *s.left);
-  arc::Measures<double> way;
-  for (int i = 0; i < 3; ++i) way.a[i] = m1.a[i] - m0.a[i], way.p[i] = m1.p[i] - m0.p[i];
-  way.t = m1.t - m0.t;
-  ArcStrain ahead;
-  arc::strain_ahead(at, way, ahead.data());
-  return ahead - arc_strain(at);
-}
-
 /// A cell as joints and springs are, with its measures.
 const Connector& connector_of(const BeamCell& cell) {
   thread_local Connector c = [] {
@@ -133,9 +120,8 @@ std::vector<StagePair> pairs_of(const Stage& s, bool has_beta) {
     if (d) out.push_back({s.e0, s.e1, loss});
   }
   if (!rates_are_in) {
-    const bool at_left = !s.conserving();
-    out.push_back({s.w0, s.w1, {.by_beta = 1 / s.h, .at_left = at_left, .slope = s.slope1()}});
-    if (s.slope0() != 0) out.push_back({s.w1, s.w0, {.by_beta = -1 / s.h, .at_left = at_left, .slope = s.slope0(), .acts = false}});
+    out.push_back({s.w0, s.w1, {.by_beta = 1 / s.h, .slope = s.slope1()}});
+    if (s.slope0() != 0) out.push_back({s.w1, s.w0, {.by_beta = -1 / s.h, .slope = s.slope0(), .acts = false}});
   }
   return out;
 }
@@ -309,7 +295,7 @@ void Beams::add_work(const Moment& m, Work& sum) const {
     });
     if (rates && cell.arc.beta > 0)
       sum.dissipated +=
-          s.share() * cell.arc.beta / s.h * arc_taken(cell.arc.law, ArcStrain::Zero(), strain_rate(cell, s), ArcStrain::Zero());
+          s.share() * cell.arc.beta / s.h * arc_taken(cell.arc.law, strain_of(cell, *s.w0), strain_of(cell, *s.w1), ArcStrain::Zero());
     if (drags && cell.arc.alpha > 0)
       sum.dissipated += cell.arc.alpha * work(momenta_of(cell, points_of(cell, *s.v)), points_of(cell, s.from()), points_of(cell, *s.end));
   }

@@ -40,8 +40,8 @@ void Springs::number(Layout& layout) {
 }
 
 void Springs::viscous(const Spring& c, const Stage& s, std::span<const double> lambda, Response& out) const {
-  const SpringLaw::Values at = c.values(*s.left);
-  c.law->viscous(c.values(*s.w0), c.values(*s.w1), interval(c, s, at, lambda), out);
+  const auto [r0, r1] = rate_pair(c, s);
+  c.law->viscous(r0, r1, interval(c, s, lambda), out);
 }
 
 void Springs::add_energy(const Config& q, const Config&, Energy& sum) const {

@@ -28,10 +28,8 @@ class Springs final : public Contribution, public Equations, public Stateful, pu
   void add_taken(std::span<const int> group, const Stage& s, std::span<const double> lambda, std::span<double> sum) const override;
 
  private:
-  /// What the rate forces of a spring may ask of a stage, `at` its measures at `left`; `slope`, when given, receives d load / d multiplier
-  /// for its load rows.
-  Interval interval(const Spring& c, const Stage& s, const SpringLaw::Values& at, std::span<const double> lambda,
-                    double* slope = nullptr) const;
+  /// What the rate forces of a spring may ask of a stage; `slope`, when given, receives d load / d multiplier for its load rows.
+  Interval interval(const Spring& c, const Stage& s, std::span<const double> lambda, double* slope = nullptr) const;
   /// Rate forces of a stage, added to `out`.
   void viscous(const Spring& c, const Stage& s, std::span<const double> lambda, Response& out) const;
   const Points& points_;
@@ -42,6 +40,9 @@ class Springs final : public Contribution, public Equations, public Stateful, pu
   std::vector<std::pair<int, std::string>> passed_;  // by the step that is tried: springs, and what to tell
 };
 
+/// The measures between which rate forces act: those at w0 and w1 over a step that keeps energy; at an instant, as far on both sides of it
+/// as its exact rates go.
+std::array<SpringLaw::Values, 2> rate_pair(const Spring& c, const Stage& s);
 /// Elastic response of a spring at a stage, D by its measures at e1.
 void spring_elastic(const Spring& c, const Stage& s, Response& out);
 

@@ -144,25 +144,5 @@ TEST(Damped, MethodsOfHighOrderKeepTheirOrder) {
   EXPECT_GT(std::log2(radau / radau_finer), 4.5) << radau << " " << radau_finer;
 }
 
-// Truth: gauss in steps a thirty-second as long.  The strains of a beam are no parabolas of its positions either.
-TEST(Damped, MethodsOfHighOrderKeepTheirOrderWithBeams) {
-  const Workplace w;
-  w.write(
-      "scene.toml",
-      "gravity = [0, 0, -9.81]\n[material.soft]\nE = 1e7\nnu = 0.3\ndensity = 1000\n[section.square]\nkind = \"rectangle\"\nwidth = 0.1\n"
-      "height = 0.1\n[beam.arm]\npoints = [[0, 0, 0], [1, 0, 0]]\ncells = [1]\nsection = \"square\"\nmaterial = \"soft\"\ndamping = 0.02\n"
-      "a = \"ground\"\n[[probe]]\nname = \"tip\"\non = \"arm.1\"\n[time]\nend = 0.32\nstep = 0.01\n");
-  const auto tip = [&](const std::string& method, const char* step) {
-    succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 --set solver.tolerance=1e-12 --set time.step=" + std::string(step) + " " +
-                    integrator(method)));
-    return Vec3(Results(w / "run.h5").at("probe/tip", 0.32).head<3>());
-  };
-  const Vec3 truth = tip("gauss", "0.00125");
-  for (const auto& [method, order] : {std::pair{"gauss", 4.5}, {"radau", 3.5}}) {
-    const double coarse = (tip(method, "0.04") - truth).norm(), fine = (tip(method, "0.02") - truth).norm();
-    EXPECT_GT(std::log2(coarse / fine), order) << method << " " << coarse << " " << fine;
-  }
-}
-
 }  // namespace
 }  // namespace hilo::test
