@@ -76,6 +76,7 @@ class Newton {
         u_(u),
         lambda_(lambda),
         options_(options),
+        guessed_(guess ? system.largest_difference(u.q, guess->before) / system.length : 0),
         foresees_(system.traits().deforms && options.foresees),
         last_(std::move(guess)) {
     if (!foresees_) last_.reset();
@@ -116,6 +117,7 @@ class Newton {
   bool damped_ = false;
   int revisions_ = 0;
   double last_residual_ = 0;
+  double guessed_;                  // way of the first guess over the scene's length, where it is a linear answer; 0: none
   double growth_ = 0.5;             // from one correction to the next, with the stress foreseen
   bool foresees_;                   // a tangent takes the stresses of cells from the last correction (physics/solid, `foresee`)
   bool foreseen_ = false;           // in the last tangent
@@ -274,9 +276,9 @@ bool Newton::is_revised() {
 }
 
 NewtonReport Newton::take() {
-  double previous = last_ ? system_.largest_difference(u_.q, last_->before) / system_.length : 1e300;
-  bool near = false;   // the next residual is likely to be small enough: look at it before building a tangent
-  bool moved = false;  // by the last iteration
+  double previous = guessed_ > 0 ? report_.correction = guessed_ : 1e300;
+  bool near = guessed_ > 0;  // the next residual is likely to be small enough: look at it before building a tangent
+  bool moved = false;        // by the last iteration
   for (int it = 0;; ++it) {
     if (near) {
       evaluate(false);

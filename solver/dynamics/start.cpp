@@ -225,27 +225,32 @@ void consistent_acceleration(const System& system, KktSolver& solver, State& s, 
 
 namespace {
 
-/// What moves by a law takes the rest along: q (whose prescribed part is in its new place already) and the multipliers move by the tangent
-/// at `before`, where nothing is strained by the first guess yet.  `stage` makes the stage of a configuration.
-/// Returns how.
+/// q (whose prescribed part is in its new place already, and takes the rest along) and the multipliers move by the tangent at `before`,
+/// where nothing is strained by the first guess yet.  `stage` makes the stage of a configuration; `foreseen`, where given, receives the
+/// way. Returns how; nothing, and all stays, where the tangent is singular, or foresees what turns cells inside out or closes gaps.
 std::optional<Correction> take_along(System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage,
-                                     const Config& before, Config& q, std::vector<double>& lambda) {
+                                     const Config& before, Config& q, std::vector<double>& lambda, std::optional<Config>* foreseen) {
   constexpr double little = 1e-3;  // of the way: the difference quotient is the tangent's columns of what is prescribed
-  Config nudged;
-  combine(nudged, {{1 - little, &before}, {little, &q}});
-  system.place(nudged);
-  Residual at, ahead;
+  Residual at;
   system.evaluate(stage(before), lambda, at, &solver);
-  system.evaluate(stage(nudged), lambda, ahead, nullptr);
+  if (system.moves()) {
+    Config nudged;
+    combine(nudged, {{1 - little, &before}, {little, &q}});
+    system.place(nudged);
+    Residual ahead;
+    system.evaluate(stage(nudged), lambda, ahead, nullptr);
+    for (size_t i = 0; i < at.r.size(); ++i) at.r[i] += (ahead.r[i] - at.r[i]) / little;
+  }
   std::vector<double> z;
-  for (size_t i = 0; i < at.r.size(); ++i) at.r[i] += (ahead.r[i] - at.r[i]) / little;
   complete(system, solver, at.r);
   if (!correct(solver, at.r, z, 1e-3).ok) return {};
   Correction out{before, {}};
   combine(out.along, {{1, &q}, {-1, &before}});
   system.add_rates(out.along, before, z);
+  if (foreseen) *foreseen = out.along;
   Unknown u(system, before, q);
   u.move(system, z);
+  if (!system.moves() && system.longest_share(before, u.q) < 1) return {};
   q = u.q;
   add_multipliers(system, at.sigma, z, lambda);
   return out;
@@ -254,7 +259,7 @@ std::optional<Correction> take_along(System& system, KktSolver& solver, const st
 }  // namespace
 
 NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vector<double>& lambda, double t, double ramp, bool mechanism,
-                         const NewtonOptions& options) {
+                         const NewtonOptions& options, std::optional<Config>* foreseen) {
   const Config before = q;
   system.prescribe(q, t, ramp);
   Config zero = q;
@@ -271,7 +276,9 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
   o.foresees = !mechanism;
   if (mechanism) o.max_iterations = std::max(o.max_iterations, 200), o.patient = true;
   std::optional<Correction> taken;
-  if (system.moves() && !mechanism) taken = take_along(system, solver, stage, before, q, lambda);
+  if (foreseen) foreseen->reset();
+  if ((system.moves() || foreseen) && !mechanism) taken = take_along(system, solver, stage, before, q, lambda, foreseen);
+  const int iterations = taken && !system.moves() ? 1 : 0;
   Unknown u(system, q, q);
   NewtonReport report = newton(
       system, solver,
@@ -283,6 +290,7 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
       },
       u, lambda, o, std::move(taken));
   q = u.q;
+  report.iterations += iterations;
   if (report.least_det.det <= 0) report.converged = false, report.reason = system.inside_out(report.least_det);
   if (report.converged) system.commit(q);
   return report;

@@ -29,7 +29,9 @@ void consistent_acceleration(const System& system, KktSolver& solver, State& s, 
 inline constexpr double slow = std::numeric_limits<double>::infinity();
 
 /// Newton to rest under the loads at time t times `ramp`.  With `mechanism`, a pseudo mass that fades away holds motions nothing resists.
+/// `foreseen`: set to the way from q that its tangent foresees, with which Newton then begins, or to nothing; null: only where something
+/// moves by a law is the tangent asked first.
 NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vector<double>& lambda, double t, double ramp, bool mechanism,
-                         const NewtonOptions& options);
+                         const NewtonOptions& options, std::optional<Config>* foreseen = nullptr);
 
 }  // namespace hilo
