@@ -80,7 +80,7 @@ std::optional<Config> BranchJump::foreseen(const Loaded& at, const Loaded& other
     const std::vector<double> moved = evaluate(nudged, at, at, false).r;
     for (size_t i = 0; i < r.size(); ++i) r[i] += (moved[i] - base[i]) / little;
   }
-  if (!correct(solver_, r, z, 1e-3).ok) return std::nullopt;
+  if (!correct(solver_, r, z, 1e-6).ok) return std::nullopt;
   system_.add_rates(way, at.q, z);
   return way;
 }

@@ -277,8 +277,8 @@ bool Newton::is_revised() {
 
 NewtonReport Newton::take() {
   double previous = guessed_ > 0 ? report_.correction = guessed_ : 1e300;
-  bool near = guessed_ > 0;  // the next residual is likely to be small enough: look at it before building a tangent
-  bool moved = false;        // by the last iteration
+  bool near = previous < 1e-3;  // the next residual is likely to be small enough: look at it before building a tangent
+  bool moved = false;           // by the last iteration
   for (int it = 0;; ++it) {
     if (near) {
       evaluate(false);

@@ -243,7 +243,7 @@ std::optional<Correction> take_along(System& system, KktSolver& solver, const st
   }
   std::vector<double> z;
   complete(system, solver, at.r);
-  if (!correct(solver, at.r, z, 1e-3).ok) return {};
+  if (!correct(solver, at.r, z, 1e-6).ok) return {};
   Correction out{before, {}};
   combine(out.along, {{1, &q}, {-1, &before}});
   system.add_rates(out.along, before, z);

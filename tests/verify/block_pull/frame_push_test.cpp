@@ -6,9 +6,7 @@
 namespace hilo::test::frame_push_test {
 namespace {
 
-/// 237 iterations in 60 steps, of which one is halved since it ends in a state
-/// that is not stable; at .2 m it passes the load at which it may give way out
-/// of its plane.
+/// At .2 m it passes the load at which it may give way out of its plane.
 TEST(FramePush, TakesFewIterationsAndCuts) {
   Case c("block_pull");
   c.use(lee_frame());
@@ -16,8 +14,8 @@ TEST(FramePush, TakesFewIterationsAndCuts) {
   std::vector<double> force;
   for (const int steps : {60, 120}) {
     const Ran ran = succeeded(c.run("hilo-solve scene.toml mesh.h5 -o run.h5 --set time.steps=" + std::to_string(steps)));
-    EXPECT_LE(c.reported("cuts"), 2) << ran.err;
-    EXPECT_LE(c.reported("newton_iterations"), 280);
+    EXPECT_EQ(c.reported("cuts"), 0) << ran.err;
+    EXPECT_LE(c.reported("newton_iterations"), 3 * steps);
     force.push_back(c.results().at("motion/push", 1)[1]);
   }
   EXPECT_NEAR(force[0], force[1], 1e-6 * std::abs(force[1]));
