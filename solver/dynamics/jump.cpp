@@ -85,7 +85,7 @@ std::optional<Config> BranchJump::foreseen(const Loaded& at, const Loaded& other
   return way;
 }
 
-double BranchJump::between(const Loaded& from, const Loaded& to, const std::optional<Config>& at_start, bool factored) {
+double BranchJump::between(const Loaded& from, const Loaded& to, std::optional<Config> at_start, bool factored) {
   combine(zero_, {{0, &to.q}});
   Config way;
   combine(way, {{1, &to.q}, {-1, &from.q}});
@@ -104,6 +104,7 @@ double BranchJump::between(const Loaded& from, const Loaded& to, const std::opti
   const double longest = system_.comm->max(gone.empty() ? 0 : *std::max_element(gone.begin(), gone.end()));
   if (longest < of_length * system_.length || !balanced(from, to)) return system_.commit(to.q), 0;
   const std::optional<Config> at_end = foreseen(to, from, factored);
+  if (!at_start) at_start = foreseen(from, to, false);
   const double behind = surprise(at_end);
   double jump = surprise(at_start);
   if (jump == 0 && ((at_start && cosine(system_, *at_start, way) < backwards) || (at_end && -cosine(system_, *at_end, way) < backwards)))

@@ -23,9 +23,9 @@ struct Loaded {
 class BranchJump {
  public:
   BranchJump(System& system, KktSolver& solver, const NewtonOptions& options) : system_(system), solver_(solver), options_(options) {}
-  /// The longest way of a point that was not foreseen [m], or 0.  `at_start`: what the tangent at `from` foresees; `factored`: the solver
-  /// has factors of the tangent at `to`.
-  double between(const Loaded& from, const Loaded& to, const std::optional<Config>& at_start, bool factored);
+  /// The longest way of a point that was not foreseen [m], or 0.  `at_start`: what the tangent at `from` foresees, where that is known;
+  /// `factored`: the solver has factors of the tangent at `to`.
+  double between(const Loaded& from, const Loaded& to, std::optional<Config> at_start, bool factored);
 
  private:
   Residual evaluate(const Config& q, const Loaded& state, const Loaded& loads, bool tangent);

@@ -312,14 +312,13 @@ NewtonReport Newton::take() {
     report_.correction = solved.ok ? correction() : 1e300;
     if (foreseen_ && !(report_.correction <= std::max(growth_ * previous, 1e-6))) {  // the stresses foreseen are too large: without them
       foresees_ = near = false, last_.reset();
-      if (!moved) previous = 1e300;
+      if (!moved && it > 0) previous = 1e300;
       moved = false;
       continue;
     }
     if (!solved.ok) return fail(solver_.name() + ": " + solved.message + (solved.is_singular ? free_part(system_, solver_, r_.sigma) : ""));
     if (!(report_.correction <= options_.reach)) return fail("the correction is not finite or leaves the scene");
-    if (!options_.patient && it > 0 && report_.correction > (foreseen_ ? growth_ : 0.5) * previous && report_.correction > 1e-6)
-      damped_ = true;
+    if (!options_.patient && report_.correction > (foreseen_ ? growth_ : 0.5) * previous && report_.correction > 1e-6) damped_ = true;
     if (!damped_)
       go_as_far_as_allowed();
     else if (!go_damped())

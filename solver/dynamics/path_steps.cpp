@@ -279,14 +279,14 @@ class PathSteps final : public Steps {
     Numbers lambda = run_.state.lambda;
     NewtonOptions options = run_.newton;
     options.least_share = 0.03;  // as load steps
-    std::optional<Config> foreseen;
-    report_ = equilibrium(run_.system, *run_.solver, q, lambda, p * end_, p, false, options, &foreseen);
+    LoadStep step{run_.state.t, at_.share};
+    report_ = equilibrium(run_.system, *run_.solver, q, lambda, p * end_, p, false, options, &step);
     run_.report.iterations += iterations_ = report_.iterations;
     to.on.rise = at_.rise, to.so_far = at_.radius;
     if (!report_.converged) return why_ = report_.reason, false;
     const State& from = run_.state;
     if (BranchJump(run_.system, *run_.solver, run_.newton)
-            .between({from.q, from.lambda, from.t, at_.share}, {q, lambda, p * end_, p}, foreseen, false) > 0)
+            .between({from.q, from.lambda, from.t, at_.share}, {q, lambda, p * end_, p}, step.foreseen, false) > 0)
       return why_ = "a load step jumps to another branch", false;
     Residual r;
     evaluate(q, lambda, p, r, true);

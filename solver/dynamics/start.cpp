@@ -225,22 +225,23 @@ void consistent_acceleration(const System& system, KktSolver& solver, State& s, 
 
 namespace {
 
-/// q (whose prescribed part is in its new place already, and takes the rest along) and the multipliers move by the tangent at `before`,
-/// where nothing is strained by the first guess yet.  `stage` makes the stage of a configuration; `foreseen`, where given, receives the
-/// way. Returns how; nothing, and all stays, where the tangent is singular, or foresees what turns cells inside out or closes gaps.
-std::optional<Correction> take_along(System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage,
-                                     const Config& before, Config& q, std::vector<double>& lambda, std::optional<Config>* foreseen) {
+using StageOf = std::function<Stage(const Config&)>;
+
+/// What moves by a law takes the rest along: q (whose prescribed part is in its new place already) and the multipliers move by the tangent
+/// at `before` under the loads of `own`, where nothing is strained by the first guess yet.  `stage` makes the stage of a configuration
+/// under the loads to come.  `foreseen` receives the way; null: both loads are the same. Returns how.
+std::optional<Correction> take_along(System& system, KktSolver& solver, const StageOf& own, const StageOf& stage, const Config& before,
+                                     Config& q, std::vector<double>& lambda, std::optional<Config>* foreseen) {
   constexpr double little = 1e-3;  // of the way: the difference quotient is the tangent's columns of what is prescribed
   Residual at;
-  system.evaluate(stage(before), lambda, at, &solver);
-  if (system.moves()) {
-    Config nudged;
-    combine(nudged, {{1 - little, &before}, {little, &q}});
-    system.place(nudged);
-    Residual ahead;
-    system.evaluate(stage(nudged), lambda, ahead, nullptr);
-    for (size_t i = 0; i < at.r.size(); ++i) at.r[i] += (ahead.r[i] - at.r[i]) / little;
-  }
+  system.evaluate(own(before), lambda, at, &solver);
+  if (foreseen) system.evaluate(stage(before), lambda, at, nullptr);
+  Config nudged;
+  combine(nudged, {{1 - little, &before}, {little, &q}});
+  system.place(nudged);
+  Residual ahead;
+  system.evaluate(stage(nudged), lambda, ahead, nullptr);
+  for (size_t i = 0; i < at.r.size(); ++i) at.r[i] += (ahead.r[i] - at.r[i]) / little;
   std::vector<double> z;
   complete(system, solver, at.r);
   if (!correct(solver, at.r, z, 1e-6).ok) return {};
@@ -250,7 +251,6 @@ std::optional<Correction> take_along(System& system, KktSolver& solver, const st
   if (foreseen) *foreseen = out.along;
   Unknown u(system, before, q);
   u.move(system, z);
-  if (!system.moves() && system.longest_share(before, u.q) < 1) return {};
   q = u.q;
   add_multipliers(system, at.sigma, z, lambda);
   return out;
@@ -259,26 +259,28 @@ std::optional<Correction> take_along(System& system, KktSolver& solver, const st
 }  // namespace
 
 NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vector<double>& lambda, double t, double ramp, bool mechanism,
-                         const NewtonOptions& options, std::optional<Config>* foreseen) {
+                         const NewtonOptions& options, LoadStep* step) {
   const Config before = q;
   system.prescribe(q, t, ramp);
   Config zero = q;
   combine(zero, {{0, &q}});
   double tau = options.always_chooses ? 0.005 : 0.05;  // of the pseudo mass M/tau^2, grows; small where parts are to meet
-  const auto stage = [&](const Config& at) {
-    Stage s = stage_at(at, t);
+  const auto stage_under = [&](const Config& at, double time, double factor) {
+    Stage s = stage_at(at, time);
     s.a = &zero;
-    s.load_factor = ramp, s.elapsed = slow;
+    s.load_factor = factor, s.elapsed = slow;
     s.mass_slope = mechanism ? 1 / (tau * tau) : 0;
     return s;
   };
+  const auto stage = [&](const Config& at) { return stage_under(at, t, ramp); };
   NewtonOptions o = options;
   o.foresees = !mechanism;
   if (mechanism) o.max_iterations = std::max(o.max_iterations, 200), o.patient = true;
   std::optional<Correction> taken;
-  if (foreseen) foreseen->reset();
-  if ((system.moves() || foreseen) && !mechanism) taken = take_along(system, solver, stage, before, q, lambda, foreseen);
-  const int iterations = taken && !system.moves() ? 1 : 0;
+  if (system.moves() && !mechanism) {
+    const auto own = [&](const Config& at) { return step ? stage_under(at, step->t, step->ramp) : stage(at); };
+    taken = take_along(system, solver, own, stage, before, q, lambda, step ? &step->foreseen : nullptr);
+  }
   Unknown u(system, q, q);
   NewtonReport report = newton(
       system, solver,
@@ -290,7 +292,6 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
       },
       u, lambda, o, std::move(taken));
   q = u.q;
-  report.iterations += iterations;
   if (report.least_det.det <= 0) report.converged = false, report.reason = system.inside_out(report.least_det);
   if (report.converged) system.commit(q);
   return report;

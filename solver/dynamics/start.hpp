@@ -28,10 +28,15 @@ void consistent_acceleration(const System& system, KktSolver& solver, State& s, 
 /// Time of a step of statics, for materials: so slow that rates do not count.
 inline constexpr double slow = std::numeric_limits<double>::infinity();
 
+/// A load step begins at rest under the loads at time t times `ramp`; `foreseen`: the way that the tangent there foresees, where something
+/// moves by a law.
+struct LoadStep {
+  double t, ramp;
+  std::optional<Config> foreseen = {};
+};
 /// Newton to rest under the loads at time t times `ramp`.  With `mechanism`, a pseudo mass that fades away holds motions nothing resists.
-/// `foreseen`: set to the way from q that its tangent foresees, with which Newton then begins, or to nothing; null: only where something
-/// moves by a law is the tangent asked first.
+/// `step`: where q is at rest; null: under the same loads.
 NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vector<double>& lambda, double t, double ramp, bool mechanism,
-                         const NewtonOptions& options, std::optional<Config>* foreseen = nullptr);
+                         const NewtonOptions& options, LoadStep* step = nullptr);
 
 }  // namespace hilo

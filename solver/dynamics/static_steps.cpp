@@ -127,8 +127,8 @@ class StaticSteps final : public Steps {
     reached.q = state.q, reached.lambda = state.lambda, reached.t = next * end_;
     NewtonOptions options = run_.newton;
     options.least_share = 0.03;  // a smaller step costs less
-    std::optional<Config> foreseen;
-    r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, false, options, &foreseen);
+    LoadStep step{state.t, at_.done};
+    r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, false, options, &step);
     run_.report.iterations += r.iterations;
     if (!r.converged && r.least_det.det > 0 && at_.step <= std::ldexp(1.0 / n_,
                                                                       -4)) {  // a sharp bend: held back by a mass that fades
@@ -146,8 +146,9 @@ class StaticSteps final : public Steps {
     }
     if (!r.converged) return r.reason;
     if (!unstable_ && ((examined_ && !is_large()) || r.iterations > few_iterations))
-      jump_ = BranchJump(system, *run_.solver, options)
-                  .between({state.q, state.lambda, state.t, at_.done}, {reached.q, reached.lambda, reached.t, next}, foreseen, factored);
+      jump_ =
+          BranchJump(system, *run_.solver, options)
+              .between({state.q, state.lambda, state.t, at_.done}, {reached.q, reached.lambda, reached.t, next}, step.foreseen, factored);
     take(reached, next);
     const std::string fault = system.fault(reached.q);
     return fault.empty() ? run_.audit->look(state.q, reached, {&taken_, 1}, r, next) : fault;
