@@ -11,12 +11,6 @@
 namespace hilo {
 namespace {
 
-template <class T>
-void sort_unique(std::vector<T>& v) {
-  std::sort(v.begin(), v.end());
-  v.erase(std::unique(v.begin(), v.end()), v.end());
-}
-
 /// "A, B, C and 4 more"
 std::string some(const std::vector<std::string>& names, size_t most = 8) {
   std::string text;
@@ -34,6 +28,18 @@ void Imported::skip(const std::string& what, const std::string& place, std::int6
       return;
     }
   not_read.push_back({what, place, count, output, hint});
+}
+
+std::set<std::string> Imported::at_work(std::initializer_list<std::string_view> sections) const {
+  std::set<std::string> names;
+  const auto add = [&](const SceneWriter& scene) {
+    for (const SceneItem& item : scene.items())
+      if (std::ranges::any_of(sections, [&](std::string_view section) { return item.is(section); }))
+        names.insert(item.ends().begin(), item.ends().end());
+  };
+  add(scene);
+  for (const DeckCase& c : cases) add(c.scene);
+  return names;
 }
 
 std::string clean_name(const std::string& name) {
@@ -141,10 +147,7 @@ std::string SetNames::free_name(const std::string& raw, const std::string& suffi
 }
 
 std::string SetNames::facets(const std::string& name, std::vector<Facet> members) {
-  const auto key = [](const Facet& f) { return std::pair(f.cell, f.facet); };
-  std::sort(members.begin(), members.end(), [&](const Facet& a, const Facet& b) { return key(a) < key(b); });
-  members.erase(std::unique(members.begin(), members.end(), [&](const Facet& a, const Facet& b) { return key(a) == key(b); }),
-                members.end());
+  sort_unique(members, [](const Facet& f) { return std::pair(f.cell, f.facet); });
   if (members.empty()) {
     in_.notes.push_back(fmt::format("facet set \"{}\" is empty: left out", name));
     return "";

@@ -190,7 +190,7 @@ void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine
     std::erase_if(in.not_read, [](const NotRead& n) { return n.what.starts_with("SUBCASE but "); });
     write_bdf_scene(deck, in, names, options);
     const BdfCase& c = cases.emplace_back(deck.chosen);
-    in.cases.push_back({number, !c.label.empty() ? c.label : !c.subtitle.empty() ? c.subtitle : c.title, in.mesh.deck_scene, in.not_read});
+    in.cases.push_back({number, !c.label.empty() ? c.label : !c.subtitle.empty() ? c.subtitle : c.title, in.scene, in.not_read});
   }
   join_told(deck, cases, in);
 }
