@@ -18,8 +18,10 @@ const KindSchema& schema_of(const SceneKind& kind) {
   fault(fmt::format("the schema has no {} of kind \"{}\"", kind.section, kind.kind));
 }
 
-/// As what a value of this type is written.
-Type written(Type t) { return t == Type::history ? Type::text : t == Type::vector3 ? Type::numbers : t; }
+bool takes(Type key, Type value) {
+  return value == key || (value == Type::text && key == Type::history) || (value == Type::number && key == Type::numbers) ||
+         (value == Type::numbers && key == Type::vector3);
+}
 
 }  // namespace
 
@@ -56,7 +58,7 @@ SceneItem& SceneItem::set(std::string_view key, const SceneValue& value) {
   if (!value.given()) return *this;
   const auto of = std::ranges::find(schema_->params, key, &Param::key);
   if (of == schema_->params.end()) fault(fmt::format("{} {} has no key \"{}\"", schema_->section, schema_->kind, key));
-  if (written(of->type) != value.type_) fault(fmt::format("{} {}: {} = {}", schema_->section, schema_->kind, key, value.toml_));
+  if (!takes(of->type, value.type_)) fault(fmt::format("{} {}: {} = {}", schema_->section, schema_->kind, key, value.toml_));
   text_ += fmt::format("{} = {}\n", key, value.toml_);
   if (key == "on" || key == "a" || key == "b") ends_.insert(ends_.end(), value.texts_.begin(), value.texts_.end());
   return *this;
