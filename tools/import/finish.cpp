@@ -48,12 +48,6 @@ void renumber(Imported& in, const std::vector<std::int64_t>& row, std::int64_t n
   }
 }
 
-std::string first_of(const std::vector<std::int64_t>& ids) {
-  std::string text;
-  for (size_t i = 0; i < std::min<size_t>(5, ids.size()); ++i) text += fmt::format("{}{}", i ? ", " : "", ids[i]);
-  return text + (ids.size() > 5 ? ", ..." : "");
-}
-
 }  // namespace
 
 std::int64_t merge_nodes(Imported& in, double distance) {
@@ -130,13 +124,14 @@ void check_cells(const Mesh& m, const std::string& file) {
       inverted.push_back(m.cell_id[c]);
   }
   if (!flat.empty())
-    throw Error(file, fmt::format("{} of {} cells have no volume or name a node twice: {}", flat.size(), m.n_cells(), first_of(flat)),
-                "remove them from the mesh; after --merge-nodes, try a smaller distance");
-  if (!inverted.empty())
     throw Error(
-        file,
-        fmt::format("{} of {} cells are inverted (scaled Jacobian <= 0 at a corner): {}", inverted.size(), m.n_cells(), first_of(inverted)),
-        "repair or remesh them; --flip turns cells that are numbered as in a mirror");
+        file, fmt::format("{} of {} cells have no volume or name a node twice: {}", flat.size(), m.n_cells(), some(flat, 5, ", ", ", ...")),
+        "remove them from the mesh; after --merge-nodes, try a smaller distance");
+  if (!inverted.empty())
+    throw Error(file,
+                fmt::format("{} of {} cells are inverted (scaled Jacobian <= 0 at a corner): {}", inverted.size(), m.n_cells(),
+                            some(inverted, 5, ", ", ", ...")),
+                "repair or remesh them; --flip turns cells that are numbered as in a mirror");
 }
 
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a reader of hilo-import hands back: a mesh whose regions and sets are named, and what it has to say aloud.
 #pragma once
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -110,6 +112,16 @@ void sort_unique(std::vector<T>& list, Key key = {}) {
   std::ranges::sort(list, {}, key);
   const auto rest = std::ranges::unique(list, {}, key);
   list.erase(rest.begin(), rest.end());
+}
+
+/// The first of a list, for a message: "1, 2, 3 and 4 more".
+template <class List>
+std::string some(const List& list, size_t most, const char* between = ", ", const char* rest = " and {} more") {
+  std::string out;
+  size_t n = 0;
+  for (const auto& one : list)
+    if (++n <= most) out += fmt::format("{}{}", n > 1 ? between : "", one);
+  return n > most ? out + fmt::format(fmt::runtime(rest), n - most) : out;
 }
 
 /// A named group of cells; `tag` is its number in the file.

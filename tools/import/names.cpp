@@ -9,17 +9,6 @@
 #include "import/imported.hpp"
 
 namespace hilo {
-namespace {
-
-/// "A, B, C and 4 more"
-std::string some(const std::vector<std::string>& names, size_t most = 8) {
-  std::string text;
-  for (size_t i = 0; i < std::min(most, names.size()); ++i) text += (i ? ", " : "") + names[i];
-  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
-  return text;
-}
-
-}  // namespace
 
 void Imported::skip(const std::string& what, const std::string& place, std::int64_t count, bool output, const std::string& hint) {
   for (auto& n : not_read)
@@ -83,7 +72,7 @@ void assign_regions(Imported& in, const std::string& file, const std::vector<Cel
       throw Error(file, fmt::format("--regions: no element set \"{}\"", name),
                   !near.empty()     ? near
                   : offered.empty() ? "the file has none"
-                                    : "there are " + some(offered));
+                                    : "there are " + some(offered, 8));
     }
     const int r = find_or_add(clean_name(name));
     for (const auto c : found->cells) m.region[c] = r;
@@ -103,7 +92,7 @@ void assign_regions(Imported& in, const std::string& file, const std::vector<Cel
     if (!named)
       note += offered.empty() || !regions.empty()
                   ? "; --rest gives it another name"
-                  : "; --rest gives it another name, --regions makes regions of element sets: " + some(offered);
+                  : "; --rest gives it another name, --regions makes regions of element sets: " + some(offered, 8);
     in.notes.push_back(note);
   }
 

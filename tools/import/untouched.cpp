@@ -35,11 +35,9 @@ void tell_untouched(Imported& in) {
   for (const auto& [p, names] : regions)
     if (!reached.contains(p)) lines.push_back(fmt::format("{} (from cell {} on)", fmt::join(names, ", "), first[p]));
   if (lines.empty()) return;
-  const size_t shown = std::min<size_t>(lines.size(), 6);
-  in.notes.push_back(fmt::format("{} of {} solids share no node with another{}: {}{}", lines.size(), regions.size(),
+  in.notes.push_back(fmt::format("{} of {} solids share no node with another{}: {}", lines.size(), regions.size(),
                                  reached.empty() ? "" : ", and nothing of the deck holds, moves, loads or ties them",
-                                 fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), "; "),
-                                 lines.size() > shown ? fmt::format(" and {} more", lines.size() - shown) : ""));
+                                 some(lines, 6, "; ")));
 }
 
 }  // namespace hilo

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <ranges>
 #include <unordered_set>
 
 #include "base/error.hpp"
@@ -37,12 +38,9 @@ void settle_densities(BdfDeck& deck, Imported& in) {
     m.mass = deck.mass_factor * (m.property != 0 ? p->second : m.mass);
   }
   if (deck.without_density.empty()) return;
-  std::string ids;
-  int n = 0;
-  for (const auto& [id, place] : deck.without_density)
-    if (++n <= 5) ids += fmt::format("{}{}", n > 1 ? ", " : "", id);
-  in.notes.push_back(fmt::format("{}: RHO is 0 or blank in {} of {} materials ({}{}): no density", deck.without_density.begin()->second, n,
-                                 deck.materials.size(), ids, n > 5 ? ", ..." : ""));
+  in.notes.push_back(fmt::format("{}: RHO is 0 or blank in {} of {} materials ({}): no density", deck.without_density.begin()->second,
+                                 deck.without_density.size(), deck.materials.size(),
+                                 some(std::views::keys(deck.without_density), 5, ", ", ", ...")));
 }
 
 /// The sets of one kind that no subcase takes.
