@@ -95,7 +95,7 @@ std::string scene_text(const Request& r, const Imported& in, const std::string& 
   if (!lines.empty()) return text + lines;
   text += "# the file carries no materials, supports or loads.  It names:\n";
   for (const auto& name : in.mesh.all_names()) text += fmt::format("#   {}\n", name);
-  return text + left_out_tables(not_read);
+  return text + left_out(not_read).text();
 }
 
 void write_scenes(const Request& r, const Imported& in) {
@@ -106,7 +106,7 @@ void write_scenes(const Request& r, const Imported& in) {
     if (std::filesystem::absolute(file) == std::filesystem::absolute(r.output))
       usage(fmt::format("SUBCASE {} and --output name the same file", c.number));
   }
-  for (const DeckCase& c : in.cases) write_text_file(scene_file(r, c), scene_text(r, in, c.scene, c.not_read));
+  for (const DeckCase& c : in.cases) write_text_file(scene_file(r, c), scene_text(r, in, c.scene.text(), c.not_read));
   if (in.cases.empty()) write_text_file(r.scene_out, scene_text(r, in, in.mesh.deck_scene, in.not_read));
 }
 

@@ -8,39 +8,13 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "model/scene.hpp"
 #include "physics/section_mesh.hpp"
 
 namespace hilo {
 namespace {
 
 constexpr double stiff_in_shear = 1e4;  // of E A: the share of shear in a tip's bend is 1.2e-3 (radius of gyration / length)^2 and less
-
-/// Sizes of a deck as the values of an entry of a scene.
-class Sizes final : public EntryValues {
- public:
-  Sizes(const DeckSection& s, const std::string& place) : s_(s), place_(place) {}
-  bool has(std::string_view key) const override {
-    return std::ranges::any_of(s_.sizes, [&](const auto& size) { return size.first == key; });
-  }
-  bool given(std::string_view key) const override { return has(key); }
-  double number(std::string_view key) const override {
-    for (const auto& [name, value] : s_.sizes)
-      if (name == key) return value;
-    refuse("", fmt::format("no {}", key));
-  }
-  Vec3 vector3(std::string_view) const override { refuse("", "no vectors"); }
-  const std::vector<double>& numbers(std::string_view) const override { refuse("", "no lists"); }
-  const std::string& text(std::string_view) const override { refuse("", "no texts"); }
-  const std::vector<std::string>& texts(std::string_view) const override { refuse("", "no texts"); }
-  bool boolean(std::string_view) const override { refuse("", "no switches"); }
-  const History& history(std::string_view) const override { refuse("", "no histories"); }
-  std::string where(std::string_view) const override { return place_; }
-  std::string label() const override { return "a section of beams"; }
-
- private:
-  const DeckSection& s_;
-  const std::string& place_;
-};
 
 double shear_modulus(const DeckMaterial& m) { return std::isnan(m.G) ? m.data.E / (2 * (1 + m.data.nu)) : m.G; }
 
@@ -49,7 +23,12 @@ double shear_modulus(const DeckMaterial& m) { return std::isnan(m.G) ? m.data.E 
 SectionArea DeckSection::area(double nu, const std::string& place) const {
   for (const auto& [key, value] : sizes)
     if (!(value > 0) && kind != "general") throw Error(place, fmt::format("a section of beams: {} {:g}", key, value), "above 0");
-  SectionArea out = section_kinds().at(kind, place).area(Sizes(*this, place), std::isnan(nu) ? 0.3 : nu);
+  Entry values("a section of beams", "", {place});
+  for (const auto& [key, value] : sizes) {
+    Value& v = values.values[key];
+    v.place.file = place, v.numbers = {value};
+  }
+  SectionArea out = section_kinds().at(kind, place).area(values, std::isnan(nu) ? 0.3 : nu);
   if (shear) out.shear_1 = (*shear)[0], out.shear_2 = (*shear)[1];
   return out;
 }
@@ -118,59 +97,40 @@ bool has_scene_material(const DeckSection& s, const DeckMaterial& m) {
          std::ranges::all_of(s.sizes, [](const auto& size) { return size.second > 0; });
 }
 
-std::string section_table(const std::string& name, DeckSection s, const DeckSection& beside, const DeckMaterial& m,
-                          const std::string& units, double scale, const std::string& place) {
+void write_section(SceneWriter& scene, const std::string& name, DeckSection s, const DeckSection& beside, const DeckMaterial& m,
+                   const ImportOptions& o, const std::string& place) {
   const auto power = [](const std::string& key) { return key == "area" ? 2 : key[0] == 'I' || key[0] == 'J' ? 4 : 1; };  // of a length
-  for (auto& [key, value] : s.sizes) value *= std::pow(scale, power(key));
-  s.I12 *= std::pow(scale, 4);
-  for (double& x : s.shear_centre) x *= scale;
+  for (auto& [key, value] : s.sizes) value *= std::pow(o.scale, power(key));
+  s.I12 *= std::pow(o.scale, 4);
+  for (double& x : s.shear_centre) x *= o.scale;
   const double E = m.data.E, G = shear_modulus(m);
   if (!(E > 0) || !(G > 0)) throw Error(place, fmt::format("material {} has no Young's or shear modulus, which a beam needs", m.name));
-  const auto si = [&](const char* unit) { return to_si(unit, units); };
-  std::string out = fmt::format("\n[section.{}]   # {}\n", toml_text(name), place);
   const SectionArea area = s.area(m.data.nu, place);
   const double k[2] = {s.no_shear_strain[0] ? stiff_in_shear * E / G : area.shear_1,
                        s.no_shear_strain[1] ? stiff_in_shear * E / G : area.shear_2};
   if (has_scene_material(s, m) && has_scene_material(beside, m)) {
-    out += fmt::format("kind = \"{}\"\n", s.kind);
-    for (const auto& [key, value] : s.sizes) out += fmt::format("{} = {}\n", key, toml_number(value * std::pow(si("m"), power(key))));
-    if (s.shear || s.no_shear_strain[0] || s.no_shear_strain[1]) out += fmt::format("shear = {}\n", toml_list({k[0], k[1]}));
-    return out;
+    SceneItem& out = scene.add({"section", s.kind}, name, place);
+    for (const auto& [key, value] : s.sizes) out.set(key, value * std::pow(o.si("m"), power(key)));
+    out.set_if(s.shear || s.no_shear_strain[0] || s.no_shear_strain[1], "shear", {k[0], k[1]});
+    return;
   }
   const double J = area.J > 0 ? area.J : 1e-6 * (area.I1 + area.I2);  // a beam resists every strain
   if (!(area.A > 0 && area.I1 > 0 && area.I2 > 0))
     throw Error(place,
                 fmt::format("section {}: area {:g}, second moments {:g} and {:g}; a beam has all of them", name, area.A, area.I1, area.I2),
                 "a rod where only the area is given");
-  const double N = si("Pa") * si("m^2"), Nm2 = si("Pa") * si("m^4"), rho = m.data.density > 0 ? m.data.density : 0;
-  const double inertia = si("kg/m^3") * si("m^4");
+  const double N = o.si("Pa") * o.si("m^2"), Nm2 = o.si("Pa") * o.si("m^4"), rho = m.data.density > 0 ? m.data.density : 0;
+  const double inertia = o.si("kg/m^3") * o.si("m^4");
   const double A1 = k[0] * G * area.A * N, A2 = k[1] * G * area.A * N;
-  const double s1 = s.shear_centre[0] * si("m"), s2 = s.shear_centre[1] * si("m");
+  const double s1 = s.shear_centre[0] * o.si("m"), s2 = s.shear_centre[1] * o.si("m");
   const double b = -E * s.I12 * Nm2, twist = G * J * Nm2 + A1 * s2 * s2 + A2 * s1 * s1;
-  out += fmt::format("kind = \"matrix\"\nstiffness = {}\n", toml_list({A1, A2, E * area.A * N}));
   const auto is_apart = [](const DeckSection& section) { return section.shear_centre != std::array{0., 0.}; };
-  if (is_apart(s) || is_apart(beside)) out += fmt::format("coupling = {}\n", toml_list({0, 0, -A1 * s2, 0, 0, A2 * s1, 0, 0, 0}));
-  out += s.I12 == 0 && beside.I12 == 0
-             ? fmt::format("bending = {}\n", toml_list({E * area.I1 * Nm2, E * area.I2 * Nm2, twist}))
-             : fmt::format("bending = {}\n", toml_list({E * area.I1 * Nm2, b, 0, b, E * area.I2 * Nm2, 0, 0, 0, twist}));
-  out +=
-      fmt::format("line_mass = {}\ninertia = {}\n", toml_number(rho * area.A * si("kg/m^3") * si("m^2") + s.line_mass * si("kg") / si("m")),
-                  toml_list({rho * area.I2 * inertia, rho * area.I1 * inertia, rho * s.I12 * inertia}));
-  return out;
-}
-
-std::string beam_table(const DeckBeam& b) {
-  std::string points;
-  for (const Vec3& x : b.points) points += fmt::format("{}{}", points.empty() ? "" : ", ", toml_list({x.x(), x.y(), x.z()}));
-  std::string out = fmt::format("\n[beam.{}]   # {}\npoints = [{}]\ncells = [1]\nsection = {}\n", toml_text(b.name), b.place, points,
-                                toml_text(b.section));
-  if (!b.section_end.empty()) out += fmt::format("section_end = {}\n", toml_text(b.section_end));
-  if (b.arc) out += "path = \"arc\"\n";
-  if (!b.material.empty()) out += fmt::format("material = {}\n", toml_text(b.material));
-  if (b.up.norm() > 0) out += fmt::format("orientation = {}\n", toml_list({b.up.x(), b.up.y(), b.up.z()}));
-  if (!b.a.empty()) out += fmt::format("a = {}\n", toml_text(b.a));
-  if (!b.b.empty()) out += fmt::format("b = {}\n", toml_text(b.b));
-  return out;
+  scene.add({"section", "matrix"}, name, place, {{"stiffness", {A1, A2, E * area.A * N}}})
+      .set_if(is_apart(s) || is_apart(beside), "coupling", {0, 0, -A1 * s2, 0, 0, A2 * s1, 0, 0, 0})
+      .set("bending", s.I12 == 0 && beside.I12 == 0 ? SceneValue{E * area.I1 * Nm2, E * area.I2 * Nm2, twist}
+                                                    : SceneValue{E * area.I1 * Nm2, b, 0, b, E * area.I2 * Nm2, 0, 0, 0, twist})
+      .set("line_mass", rho * area.A * o.si("kg/m^3") * o.si("m^2") + s.line_mass * o.si("kg") / o.si("m"))
+      .set("inertia", {rho * area.I2 * inertia, rho * area.I1 * inertia, rho * s.I12 * inertia});
 }
 
 }  // namespace hilo

@@ -40,19 +40,9 @@ DeckSection section_of_rectangles(const std::vector<DeckRectangle>& parts, const
 
 /// Whether the section is written with a material of the scene; else as stiffnesses, for what the material or its kind cannot say.
 bool has_scene_material(const DeckSection& section, const DeckMaterial& material);
-/// [section.NAME] in SI, its lengths times `scale` as those of the geometry, with the keys that `beside`, the other end of a taper or
+/// [section.NAME] in SI, its lengths scaled as those of the geometry, with the keys that `beside`, the other end of a taper or
 /// itself, needs; Error at `place` where the material says no moduli.
-std::string section_table(const std::string& name, DeckSection section, const DeckSection& beside, const DeckMaterial& material,
-                          const std::string& units, double scale, const std::string& place);
-
-/// An element between two bodies.
-struct DeckBeam {
-  std::string name, place, section, section_end = "", material = "";  // "" where it does not taper, and where the section has none
-  std::vector<Vec3> points = {};                                      // [m]
-  Vec3 up;                                                            // near axis 2
-  std::string a = "", b = "";                                         // bodies; "" for an end with a section of its own
-  bool arc = false;                                                   // through three points; else straight, a section at each
-};
-std::string beam_table(const DeckBeam& beam);
+void write_section(SceneWriter& scene, const std::string& name, DeckSection section, const DeckSection& beside,
+                   const DeckMaterial& material, const ImportOptions& options, const std::string& place);
 
 }  // namespace hilo

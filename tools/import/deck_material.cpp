@@ -1,32 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/deck_material.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "base/param.hpp"
-
 namespace hilo {
-
-std::string toml_text(const std::string& s) {
-  std::string q(1, '"');
-  for (const char c : s) {
-    if (c == '"' || c == '\\') q += '\\';
-    q += static_cast<unsigned char>(c) < 32 ? ' ' : c;
-  }
-  q += '"';
-  return q;
-}
-std::string toml_number(double x) {
-  std::string s = fmt::format("{}", x == 0 ? 0.0 : x);
-  return s.find_first_of(".en") == std::string::npos ? s + ".0" : s;
-}
-std::string toml_list(const std::vector<double>& v) {
-  std::string s = "[";
-  for (size_t i = 0; i < v.size(); ++i) s += (i ? ", " : "") + toml_number(v[i]);
-  return s + "]";
-}
 
 void DeckMaterial::become(const std::string& other) {
   if (kind != "stvk" && kind != other && no_law.empty()) no_law = kind + " and " + other + " at once";
@@ -43,17 +20,15 @@ RegionData DeckMaterial::carried() const {
   return out;
 }
 
-std::string DeckMaterial::table(const std::string& as, const std::string& units) const {
-  std::string s = fmt::format("\n[material.{}]\nkind = \"{}\"\n", toml_text(clean_name(as)), kind);
-  if (!std::isnan(data.E)) s += fmt::format("E = {}\n", toml_number(data.E * to_si("Pa", units)));
-  if (!std::isnan(data.nu)) s += fmt::format("nu = {}\n", toml_number(data.nu));
+void DeckMaterial::write(SceneWriter& scene, const ImportOptions& o) const {
+  SceneItem& out = scene.add({"material", kind}, clean_name(name), "");
+  out.set_if(!std::isnan(data.E), "E", data.E * o.si("Pa")).set_if(!std::isnan(data.nu), "nu", data.nu);
   for (const DeckKey& k : keys) {
     std::vector<double> v = k.values;
-    for (double& x : v) x *= to_si(k.unit, units);
-    s += fmt::format("{} = {}\n", k.key, k.list ? toml_list(v) : toml_number(v.front()));
+    for (double& x : v) x *= o.si(k.unit);
+    out.set(k.key, k.list ? SceneValue(v) : SceneValue(v.front()));
   }
-  if (!std::isnan(data.density)) s += fmt::format("density = {}\n", toml_number(data.density * to_si("kg/m^3", units)));
-  return s;
+  out.set_if(!std::isnan(data.density), "density", data.density * o.si("kg/m^3"));
 }
 
 std::string set_hardening(DeckMaterial& m, const std::vector<double>& strain, const std::vector<double>& stress, double kinematic) {

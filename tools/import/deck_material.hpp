@@ -33,16 +33,11 @@ struct DeckMaterial {
   /// out.
   RegionData carried() const;
   /// [material.NAME] in SI.
-  std::string table(const std::string& as, const std::string& units) const;
+  void write(SceneWriter& scene, const ImportOptions& options) const;
 };
 
 /// A yield stress by equivalent plastic strain becomes a metal's keys; "" or why it cannot.  `kinematic`: the share of hardening that moves
 /// the yield surface; a share above 0 asks for one slope.
 std::string set_hardening(DeckMaterial& m, const std::vector<double>& strain, const std::vector<double>& stress, double kinematic);
-
-/// TOML.
-std::string toml_text(const std::string& s);
-std::string toml_number(double x);
-std::string toml_list(const std::vector<double>& v);
 
 }  // namespace hilo

@@ -146,7 +146,7 @@ class Dividing {
       is.assign(m_.X.size(), 0);
       for (const auto a : set) is[a] = 1;
     }
-    const auto supports = of_motions();
+    const auto supports = in_.at_work({"motion"});
     for (const auto& [ends, middle] : middle_) {
       if (middle < first_new_) continue;
       const auto held = [&](std::int64_t a) { return in_.held.contains(a) ? in_.held.at(a) : 0U; };
@@ -161,17 +161,6 @@ class Dividing {
       for (auto& [name, is] : inside)
         if ((is[ends.first] && is[ends.second]) || (both && is[like] && supports.contains(name))) m_.node_sets.at(name).push_back(middle);
     }
-  }
-
-  /// Sets that a [[motion]] of the deck's scene acts on.
-  std::set<std::string> of_motions() const {
-    std::set<std::string> names;
-    const std::string &text = m_.deck_scene, table = "\n[[motion]]", on = "\non = \"";
-    for (size_t at = text.find(table); at != text.npos; at = text.find(table, at + 1)) {
-      const size_t from = text.find(on, at);
-      if (from != text.npos) names.insert(text.substr(from + on.size(), text.find('"', from + on.size()) - from - on.size()));
-    }
-    return names;
   }
 
   Imported& in_;

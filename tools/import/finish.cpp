@@ -43,16 +43,9 @@ void renumber(Imported& in, const std::vector<std::int64_t>& row, std::int64_t n
   for (auto& a : m.nodes) a = row[a];
   for (auto& [name, set] : m.node_sets) {
     for (auto& a : set) a = row[a];
-    std::sort(set.begin(), set.end());
-    set.erase(std::unique(set.begin(), set.end()), set.end());
+    sort_unique(set);
     if (!set.empty() && set.front() < 0) set.erase(set.begin());
   }
-}
-
-std::string first_of(const std::vector<std::int64_t>& ids) {
-  std::string text;
-  for (size_t i = 0; i < std::min<size_t>(5, ids.size()); ++i) text += fmt::format("{}{}", i ? ", " : "", ids[i]);
-  return text + (ids.size() > 5 ? ", ..." : "");
 }
 
 }  // namespace
@@ -131,13 +124,14 @@ void check_cells(const Mesh& m, const std::string& file) {
       inverted.push_back(m.cell_id[c]);
   }
   if (!flat.empty())
-    throw Error(file, fmt::format("{} of {} cells have no volume or name a node twice: {}", flat.size(), m.n_cells(), first_of(flat)),
-                "remove them from the mesh; after --merge-nodes, try a smaller distance");
-  if (!inverted.empty())
     throw Error(
-        file,
-        fmt::format("{} of {} cells are inverted (scaled Jacobian <= 0 at a corner): {}", inverted.size(), m.n_cells(), first_of(inverted)),
-        "repair or remesh them; --flip turns cells that are numbered as in a mirror");
+        file, fmt::format("{} of {} cells have no volume or name a node twice: {}", flat.size(), m.n_cells(), some(flat, 5, ", ", ", ...")),
+        "remove them from the mesh; after --merge-nodes, try a smaller distance");
+  if (!inverted.empty())
+    throw Error(file,
+                fmt::format("{} of {} cells are inverted (scaled Jacobian <= 0 at a corner): {}", inverted.size(), m.n_cells(),
+                            some(inverted, 5, ", ", ", ...")),
+                "repair or remesh them; --flip turns cells that are numbered as in a mirror");
 }
 
 namespace {
@@ -253,12 +247,12 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   tell_doubled(in);
   tell_slivers(in);
   tell_untouched(in);
-  for (DeckCase& c : in.cases)
-    if (!c.scene.empty()) c.scene += left_out_tables(c.not_read);
-  if (!in.cases.empty())
-    m.deck_scene = in.cases.front().scene;
-  else if (!m.deck_scene.empty())
-    m.deck_scene += left_out_tables(in.not_read);
+  const auto complete = [](SceneWriter& scene, const std::vector<NotRead>& not_read) {
+    if (!scene.items().empty()) scene.append(left_out(not_read));
+  };
+  complete(in.scene, in.not_read);
+  for (DeckCase& c : in.cases) complete(c.scene, c.not_read);
+  m.deck_scene = (in.cases.empty() ? in.scene : in.cases.front().scene).text();
   for (size_t r = 0; r < m.region_name.size(); ++r) {
     auto& data = m.region_data[r];
     data.density *= to_si("kg/m^3", options.units);

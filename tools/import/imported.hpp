@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a reader of hilo-import hands back: a mesh whose regions and sets are named, and what it has to say aloud.
 #pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,6 +18,7 @@
 #include <vector>
 
 #include "base/registry.hpp"
+#include "import/scene_writer.hpp"
 #include "import/thin.hpp"
 #include "model/mesh.hpp"
 #include "model/thin_regions.hpp"
@@ -45,6 +50,10 @@ struct ImportOptions {
   bool keep_apart = false;              // solids of a CAD file that touch share no nodes
   std::vector<std::string> sets;        // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
   std::vector<std::string> beams;       // GROUP=KIND:KEY=VALUE,...: curves become beams with this section  [unit of the file]
+
+  double si(std::string_view unit) const { return to_si(unit, units); }
+  /// A point of the geometry, which --scale scales too, in SI.
+  Vec3 point(const Vec3& x) const { return x * (scale * si("m")); }
 };
 
 /// A keyword or item of the deck that has no place in the mesh or the scene lines.
@@ -59,7 +68,8 @@ struct NotRead {
 /// A SUBCASE of a Nastran file, where each has a scene.
 struct DeckCase {
   std::int64_t number;
-  std::string title, scene;
+  std::string title;
+  SceneWriter scene;
   std::vector<NotRead> not_read = {};
 };
 
@@ -67,7 +77,8 @@ struct Imported {
   Mesh mesh;                       // numbers of the deck; region -1 until assign_regions
   std::vector<std::string> notes;  // said on stderr, one line each
   std::vector<NotRead> not_read;
-  std::vector<DeckCase> cases;               // of --subcase all; the first one is mesh.deck_scene too
+  SceneWriter scene;                         // what the deck becomes beside the mesh: finish() writes mesh.deck_scene
+  std::vector<DeckCase> cases;               // of --subcase all; the first one is written
   std::vector<ThinRegion> thin_regions;      // by region, empty without shells and beams
   std::map<std::int64_t, ThinSection> thin;  // of the cells that are shells or beams
   std::int64_t n_beams = 0;                  // elements that are beams of the scene
@@ -84,6 +95,8 @@ struct Imported {
       as_listed;  // node sets that order 2 and divided shells must not complete: the deck's force acts on each of their nodes
 
   void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false, const std::string& hint = "");
+  /// What the tables of these sections, of any scene here, act on or are between.
+  std::set<std::string> at_work(std::initializer_list<std::string_view> sections) const;
 };
 
 /// What the model lacks by it: "load", "support", "tie", "material", "other", or "" where nothing is lost.
@@ -91,7 +104,25 @@ std::string_view loss_of(const NotRead& n);
 /// Notes the solids that share no node with another and that no line of the deck's scene acts on.
 void tell_untouched(Imported& in);
 /// The [[left_out]] of a scene.
-std::string left_out_tables(const std::vector<NotRead>& not_read);
+SceneWriter left_out(const std::vector<NotRead>& not_read);
+
+/// Rising, once each, by what `key` says of them.
+template <class T, class Key = std::identity>
+void sort_unique(std::vector<T>& list, Key key = {}) {
+  std::ranges::sort(list, {}, key);
+  const auto rest = std::ranges::unique(list, {}, key);
+  list.erase(rest.begin(), rest.end());
+}
+
+/// The first of a list, for a message: "1, 2, 3 and 4 more".
+template <class List>
+std::string some(const List& list, size_t most, const char* between = ", ", const char* rest = " and {} more") {
+  std::string out;
+  size_t n = 0;
+  for (const auto& one : list)
+    if (++n <= most) out += fmt::format("{}{}", n > 1 ? between : "", one);
+  return n > most ? out + fmt::format(fmt::runtime(rest), n - most) : out;
+}
 
 /// A named group of cells; `tag` is its number in the file.
 struct CellGroup {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a model lacks by a card that was not read, and the [[left_out]] of a scene.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <utility>
 
 #include "base/param.hpp"
-#include "import/deck_material.hpp"
 #include "import/imported.hpp"
 
 namespace hilo {
@@ -218,16 +215,14 @@ std::string_view loss_of(const NotRead& n) {
   return other;
 }
 
-std::string left_out_tables(const std::vector<NotRead>& not_read) {
-  std::string text;
-  for (const NotRead& n : not_read) {
-    const auto lost = loss_of(n);
-    if (lost.empty()) continue;
-    text += fmt::format("\n[[left_out]]\ncard = {}\nloss = \"{}\"\n", toml_text(n.what), lost);
-    if (n.count != 1) text += fmt::format("count = {}\n", n.count);
-    if (!n.place.empty()) text += fmt::format("place = {}\n", toml_text(n.place));
-  }
-  return text;
+SceneWriter left_out(const std::vector<NotRead>& not_read) {
+  SceneWriter out;
+  for (const NotRead& n : not_read)
+    if (const auto lost = loss_of(n); !lost.empty())
+      out.add("left_out", "", "", {{"card", n.what}, {"loss", std::string(lost)}})
+          .set_if(n.count != 1, "count", n.count)
+          .set("place", n.place);
+  return out;
 }
 
 }  // namespace hilo

@@ -9,85 +9,89 @@
 #include <bit>
 
 #include "base/error.hpp"
-#include "import/deck_material.hpp"
 
 namespace hilo {
 
-std::optional<HoldingJoint> joint_that_holds(unsigned components) {
+namespace {
+
+/// A kind of joint, and which of the axes are its own and its x, or -1.
+struct Stage {
+  const char* kind;
+  int axis = -1, x = -1;
+};
+
+/// The joint that holds these components, else joints one behind the other.
+std::vector<Stage> stages_that_hold(unsigned components) {
   const unsigned slides = components & 7, turns = components >> 3 & 7;
   const auto free = [](unsigned bits) { return std::countr_zero(7 & ~bits); };  // the axis that is not held
-  const int n_slides = std::popcount(slides), n_turns = std::popcount(turns);
-  if (slides == 7 && turns == 7) return HoldingJoint{"fixed", -1};
-  if (slides == 7 && turns == 0) return HoldingJoint{"spherical", -1};
-  if (slides == 7 && n_turns == 2) return HoldingJoint{"revolute", free(turns)};
-  if (n_slides == 2 && turns == 7) return HoldingJoint{"prismatic", free(slides)};
-  if (n_slides == 2 && turns == slides) return HoldingJoint{"cylindrical", free(slides)};
-  if (n_slides == 1 && n_turns == 2 && (turns & slides) == 0) return HoldingJoint{"planar", std::countr_zero(slides)};
-  if (n_slides == 1 && turns == 0) return HoldingJoint{"in-plane", std::countr_zero(slides)};
-  if (n_slides == 2 && turns == 0) return HoldingJoint{"in-line", free(slides)};
-  return std::nullopt;
+  const int n_slides = std::popcount(slides), n_turns = std::popcount(turns), held = std::countr_zero(turns);
+  if (components == 0) return {};
+  if (slides == 7 && turns == 7) return {{"fixed"}};
+  if (n_slides == 2 && turns == slides) return {{"cylindrical", free(slides)}};
+  if (n_slides == 1 && n_turns == 2 && (turns & slides) == 0) return {{"planar", std::countr_zero(slides)}};
+  if (n_slides == 1 && turns == 0) return {{"in-plane", std::countr_zero(slides)}};
+  if (n_slides == 2 && turns == 0) return {{"in-line", free(slides)}};
+  std::vector<Stage> stages;
+  for (int k = 0; k < 3; ++k)
+    if (!(slides >> k & 1)) stages.push_back({"prismatic", k});
+  if (turns == 0)
+    stages.push_back({"spherical"});
+  else if (n_turns == 1)  // its cross bends about the two others
+    stages.push_back({"universal", (held + 1) % 3, (held + 2) % 3});
+  else if (n_turns == 2)
+    stages.push_back({"revolute", free(turns)});
+  return stages;
 }
 
-std::string joints_that_hold(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b,
-                             const std::string& at, const std::string& place,
-                             const std::function<std::string(const std::string&, const std::string&)>& unique) {
-  struct Stage {
-    const char* kind;
-    int axis, x;
-  };
-  std::vector<Stage> stages;
-  if (const auto one = joint_that_holds(components)) {
-    stages.push_back({one->kind, one->axis, -1});
-  } else if (components != 0) {
-    const unsigned turns = components >> 3 & 7;
-    const int held = std::countr_zero(turns);
-    for (int k = 0; k < 3; ++k)
-      if (!(components >> k & 1)) stages.push_back({"prismatic", k, -1});
-    if (turns == 0)
-      stages.push_back({"spherical", -1, -1});
-    else if (std::popcount(turns) == 1)  // its cross bends about the two others
-      stages.push_back({"universal", (held + 1) % 3, (held + 2) % 3});
-    else if (std::popcount(turns) == 2)
-      stages.push_back({"revolute", std::countr_zero(7 & ~turns), -1});
-  }
-  std::string out, from = a;
+}  // namespace
+
+void joints_that_hold(SceneWriter& scene, unsigned components, const Mat3& axes, const std::string& name, const std::string& a,
+                      const std::string& b, const Vec3& at, const std::string& place) {
+  const auto stages = stages_that_hold(components);
+  std::string from = a;
   for (size_t i = 0; i < stages.size(); ++i) {
-    const Stage& s = stages[i];
-    std::string to = b;
-    if (i + 1 < stages.size()) {
-      to = unique("body", name + "_slide");
-      out += fmt::format("\n[[body]]   # {}\nname = {}\nmass = 0\ncom = {}\n", place, toml_text(to), at);
-    }
-    out += fmt::format("\n[[joint]]   # {}\nkind = \"{}\"\nname = {}\na = {}\nb = {}\nat = {}\n", place, s.kind,
-                       toml_text(unique("joint", name)), toml_text(from), toml_text(to), at);
-    const auto direction = [&](int k) { return toml_list({axes(0, k), axes(1, k), axes(2, k)}); };
-    if (s.axis >= 0) out += fmt::format("axis = {}\n", direction(s.axis));
-    if (s.x >= 0) out += fmt::format("x = {}\n", direction(s.x));
+    const auto& [kind, axis, x] = stages[i];
+    const std::string to = i + 1 < stages.size() ? massless_body(scene, scene.unique("body", name + "_slide"), at, place) : b;
+    SceneItem& joint = scene.add_unique({"joint", kind}, name, place, {{"a", from}, {"b", to}, {"at", at}});
+    if (axis >= 0) joint.set("axis", axes.col(axis));
+    if (x >= 0) joint.set("x", axes.col(x));
     from = to;
   }
-  return out;
 }
 
-std::string motion_of_body(const std::string& name, const std::string& on, const Prescribed& by, const std::string& at,
-                           const std::string& past, const std::string& place) {
-  const std::string head = fmt::format("\n[[motion]]   # {}\nkind = \"{}\"\nname = {}\non = {}\n", place,
-                                       !by.any()                 ? "fixed"
-                                       : by.turn == Vec3::Zero() ? "translation"
-                                                                 : "rotation",
-                                       toml_text(name), toml_text(on));
-  if (!by.any()) return head;
-  if (by.turn == Vec3::Zero()) return head + fmt::format("displacement = {}\n", toml_list({by.way.x(), by.way.y(), by.way.z()})) + past;
-  if (by.way != Vec3::Zero())
+void hold_body(SceneWriter& scene, const std::string& name, unsigned components, const Mat3& axes, const Prescribed& by, const Vec3& at,
+               const std::string& history, const std::string& place) {
+  if (components == 63) return motion_of_body(scene, scene.unique("motion", name), name, by, at, history, place);
+  std::string to = "ground";
+  if (by.any()) {
+    to = massless_body(scene, scene.unique("body", name + "_moved"), at, place);
+    motion_of_body(scene, to, to, by, at, history, place);
+  }
+  joints_that_hold(scene, components, axes, name + "_support", to, name, at, place);
+}
+
+void hold_set(SceneWriter& scene, const std::string& set, unsigned components, const SceneValue& displacement, const std::string& history,
+              const std::string& place) {
+  std::vector<std::string> along;
+  for (size_t k = 0; k < 3; ++k)
+    if (components >> k & 1) along.emplace_back(1, "xyz"[k]);
+  scene
+      .add_unique({"motion", displacement.given() ? "translation" : "fixed"}, set, place,
+                  {{"on", set}, {"components", along}, {"displacement", displacement}})
+      .set_if(displacement.given(), "history", history);
+}
+
+void motion_of_body(SceneWriter& scene, const std::string& name, const std::string& on, const Prescribed& by, const Vec3& at,
+                    const std::string& history, const std::string& place) {
+  if (by.turn != Vec3::Zero() && by.way != Vec3::Zero())
     throw Error(place, fmt::format("\"{}\" is moved and turned by given amounts, which is not read", on), "move it or turn it");
-  const Vec3 axis = by.turn.normalized();
-  return head +
-         fmt::format("at = {}\naxis = {}\nangle = {}\n", at, toml_list({axis.x(), axis.y(), axis.z()}), toml_number(by.turn.norm())) + past;
-}
-
-std::string moving_body(const std::string& name, const Prescribed& by, const std::string& at, const std::string& past,
-                        const std::string& place) {
-  return fmt::format("\n[[body]]   # {}\nname = {}\nmass = 0.0\ncom = {}\n", place, toml_text(name), at) +
-         motion_of_body(name, name, by, at, past, place);
+  if (!by.any())
+    scene.add({"motion", "fixed"}, name, place, {{"on", on}});
+  else if (by.turn == Vec3::Zero())
+    scene.add({"motion", "translation"}, name, place, {{"on", on}, {"displacement", by.way}, {"history", history}});
+  else
+    scene.add({"motion", "rotation"}, name, place,
+              {{"on", on}, {"at", at}, {"axis", by.turn.normalized()}, {"angle", by.turn.norm()}, {"history", history}});
 }
 
 std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, const std::vector<double>& w, const Vec3& at, const Vec3& F,
@@ -134,49 +138,41 @@ bool in_a_plane(const std::vector<Vec3>& points) {
   return !(v[0] > 1e-10 * v[2]);
 }
 
-std::string sliding_body(const std::string& name, const std::string& joint, const std::string& axis, const std::string& at,
-                         const std::string& place) {
-  std::string out = fmt::format("\n[[body]]   # {}\nname = {}\nmass = 0\ncom = {}\n", place, toml_text(name), at);
-  if (!joint.empty())
-    out += fmt::format("\n[[joint]]   # {}\nkind = \"prismatic\"\nname = {}\nb = {}\nat = {}\naxis = {}\n", place, toml_text(joint),
-                       toml_text(name), at, axis);
-  return out;
+std::string massless_body(SceneWriter& scene, const std::string& name, const Vec3& at, const std::string& place) {
+  scene.add("body", name, place, {{"mass", 0}, {"com", at}});
+  return name;
 }
 
-std::string joints_of_sum(const std::vector<SumTerm>& terms, const std::string& name, const std::string& place,
-                          const std::function<std::string(const std::string& section, const std::string& wish)>& unique) {
-  const auto list = [](const Vec3& v) { return toml_list({v.x(), v.y(), v.z()}); };
-  if (terms.size() == 1)
-    return fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\nb = {}\nat = {}\naxis = {}\n", place,
-                       toml_text(unique("joint", name)), toml_text(terms[0].end), terms[0].at, list(terms[0].way.normalized()));
-  std::string out;
+std::string sliding_body(SceneWriter& scene, const std::string& name, const Vec3& axis, const Vec3& at, const std::string& place) {
+  massless_body(scene, name, at, place);
+  scene.add_unique({"joint", "prismatic"}, name, place, {{"b", name}, {"at", at}, {"axis", axis}});
+  return name;
+}
+
+void joints_of_sum(SceneWriter& scene, const std::vector<SumTerm>& terms, const std::string& name, const std::string& place) {
+  if (terms.size() == 1) return joint_to_slide(scene, name, "", terms[0].end, terms[0].way.normalized(), terms[0].at, place);
   const auto row = [&](const SumTerm& a, const SumTerm& b, const SumTerm* c) {
-    out += fmt::format("\n[[joint]]   # {}\nkind = \"weighted-sum\"\nname = {}\na = {}\nb = {}\nat_a = {}\nat_b = {}\n", place,
-                       toml_text(unique("joint", name)), toml_text(a.end), toml_text(b.end), a.at, b.at);
-    out += fmt::format("axis_a = {}\naxis_b = {}\n", list(a.way.normalized()), list(b.way.normalized()));
-    if (c) {
-      out += fmt::format("carrier = {}\nat_carrier = {}\naxis_carrier = {}\n", toml_text(c->end), c->at, list(c->way.normalized()));
-      out += fmt::format("factor_carrier = {}\n", toml_number(c->way.norm()));
-    }
-    out += fmt::format("factors = {}\n", toml_list({a.way.norm(), b.way.norm()}));
+    SceneItem& joint = scene.add_unique(
+        {"joint", "weighted-sum"}, name, place,
+        {{"a", a.end}, {"b", b.end}, {"at_a", a.at}, {"at_b", b.at}, {"axis_a", a.way.normalized()}, {"axis_b", b.way.normalized()}});
+    if (c)
+      joint.set("carrier", c->end).set("at_carrier", c->at).set("axis_carrier", c->way.normalized()).set("factor_carrier", c->way.norm());
+    joint.set("factors", {a.way.norm(), b.way.norm()});
   };
   SumTerm first = terms[0];
   size_t next = 1;
   for (; terms.size() - next > 2; ++next) {
-    const std::string body = unique("body", name + "_sum");
-    out += sliding_body(body, unique("joint", body), "[1, 0, 0]", terms[0].at, place);
-    const SumTerm sum{body, terms[0].at, -Vec3::UnitX()};
+    const SumTerm sum{sliding_body(scene, scene.unique("body", name + "_sum"), Vec3::UnitX(), terms[0].at, place), terms[0].at,
+                      -Vec3::UnitX()};
     row(first, terms[next], &sum);
-    first = {body, terms[0].at, Vec3::UnitX()};
+    first = {sum.end, terms[0].at, Vec3::UnitX()};
   }
   row(first, terms[next], next + 1 < terms.size() ? &terms[next + 1] : nullptr);
-  return out;
 }
 
-std::string joint_to_slide(const std::string& name, const std::string& body, const std::string& node, const std::string& axis,
-                           const std::string& at, const std::string& place) {
-  return fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\n", place, toml_text(name),
-                     toml_text(body), toml_text(node), at, axis);
+void joint_to_slide(SceneWriter& scene, const std::string& name, const std::string& body, const std::string& node, const Vec3& axis,
+                    const Vec3& at, const std::string& place) {
+  scene.add_unique({"joint", "in-plane"}, name, place, {{"a", body}, {"b", node}, {"at", at}, {"axis", axis}});
 }
 
 }  // namespace hilo

@@ -9,23 +9,6 @@
 #include "import/imported.hpp"
 
 namespace hilo {
-namespace {
-
-template <class T>
-void sort_unique(std::vector<T>& v) {
-  std::sort(v.begin(), v.end());
-  v.erase(std::unique(v.begin(), v.end()), v.end());
-}
-
-/// "A, B, C and 4 more"
-std::string some(const std::vector<std::string>& names, size_t most = 8) {
-  std::string text;
-  for (size_t i = 0; i < std::min(most, names.size()); ++i) text += (i ? ", " : "") + names[i];
-  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
-  return text;
-}
-
-}  // namespace
 
 void Imported::skip(const std::string& what, const std::string& place, std::int64_t count, bool output, const std::string& hint) {
   for (auto& n : not_read)
@@ -34,6 +17,18 @@ void Imported::skip(const std::string& what, const std::string& place, std::int6
       return;
     }
   not_read.push_back({what, place, count, output, hint});
+}
+
+std::set<std::string> Imported::at_work(std::initializer_list<std::string_view> sections) const {
+  std::set<std::string> names;
+  const auto add = [&](const SceneWriter& scene) {
+    for (const SceneItem& item : scene.items())
+      if (std::ranges::any_of(sections, [&](std::string_view section) { return item.is(section); }))
+        names.insert(item.ends().begin(), item.ends().end());
+  };
+  add(scene);
+  for (const DeckCase& c : cases) add(c.scene);
+  return names;
 }
 
 std::string clean_name(const std::string& name) {
@@ -77,7 +72,7 @@ void assign_regions(Imported& in, const std::string& file, const std::vector<Cel
       throw Error(file, fmt::format("--regions: no element set \"{}\"", name),
                   !near.empty()     ? near
                   : offered.empty() ? "the file has none"
-                                    : "there are " + some(offered));
+                                    : "there are " + some(offered, 8));
     }
     const int r = find_or_add(clean_name(name));
     for (const auto c : found->cells) m.region[c] = r;
@@ -97,7 +92,7 @@ void assign_regions(Imported& in, const std::string& file, const std::vector<Cel
     if (!named)
       note += offered.empty() || !regions.empty()
                   ? "; --rest gives it another name"
-                  : "; --rest gives it another name, --regions makes regions of element sets: " + some(offered);
+                  : "; --rest gives it another name, --regions makes regions of element sets: " + some(offered, 8);
     in.notes.push_back(note);
   }
 
@@ -141,10 +136,7 @@ std::string SetNames::free_name(const std::string& raw, const std::string& suffi
 }
 
 std::string SetNames::facets(const std::string& name, std::vector<Facet> members) {
-  const auto key = [](const Facet& f) { return std::pair(f.cell, f.facet); };
-  std::sort(members.begin(), members.end(), [&](const Facet& a, const Facet& b) { return key(a) < key(b); });
-  members.erase(std::unique(members.begin(), members.end(), [&](const Facet& a, const Facet& b) { return key(a) == key(b); }),
-                members.end());
+  sort_unique(members, [](const Facet& f) { return std::pair(f.cell, f.facet); });
   if (members.empty()) {
     in_.notes.push_back(fmt::format("facet set \"{}\" is empty: left out", name));
     return "";

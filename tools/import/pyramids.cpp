@@ -58,8 +58,7 @@ void tell_pyramids(Imported& in, std::int64_t n) {
     const auto a = m.cell(c), b = m.cell(c + 1);
     if (m.shape[c] != static_cast<std::uint8_t>(Shape::tet4) || m.shape[c + 1] != m.shape[c] || a[3] != b[3]) continue;
     std::vector<std::int64_t> base{a[0], a[1], a[2], b[0], b[1], b[2]};
-    std::ranges::sort(base);
-    base.erase(std::ranges::unique(base).begin(), base.end());
+    sort_unique(base);
     if (base.size() == 4) beside += quadrangles.contains(base);
   }
   if (beside > 0)

@@ -64,14 +64,6 @@ std::vector<SetRow> sets_of(const Mesh& m) {
   return rows;
 }
 
-/// How many "[[load]]" there are.
-int tables_in(const std::string& scene, const std::string& word) {
-  const std::string table = "\n[[" + word + "]]";
-  int n = 0;
-  for (size_t at = 0; (at = scene.find(table, at)) != scene.npos; ++at) ++n;
-  return n;
-}
-
 }  // namespace
 
 std::string import_table(const Imported& in, const std::vector<std::string>& scenes) {
@@ -106,8 +98,8 @@ std::string import_table(const Imported& in, const std::vector<std::string>& sce
       const DeckCase& c = in.cases[i];
       const auto lost = std::ranges::count_if(c.not_read, [](const NotRead& n) { return !loss_of(n).empty(); });
       l.rows.push_back({fmt::format("{}", c.number), i < scenes.size() && !scenes[i].empty() ? scenes[i] : "-",
-                        fmt::format("{}", tables_in(c.scene, "load")), fmt::format("{}", tables_in(c.scene, "motion")),
-                        fmt::format("{}", lost), c.title});
+                        fmt::format("{}", c.scene.count("load")), fmt::format("{}", c.scene.count("motion")), fmt::format("{}", lost),
+                        c.title});
     }
     text += '\n';
     text += l.text();

@@ -154,8 +154,7 @@ class Thickening {
     for (auto& [name, set] : m.node_sets) {
       for (size_t k = 0, n = set.size(); k < n; ++k)
         if (const auto all = all_.find(set[k]); all != all_.end()) set.insert(set.end(), all->second.begin(), all->second.end());
-      std::sort(set.begin(), set.end());
-      set.erase(std::unique(set.begin(), set.end()), set.end());
+      sort_unique(set);
     }
     for (auto& [name, set] : m.facet_sets) {  // the outward side of a quadrangle is that of its own normal
       const bool below = in_.below.contains(name);

@@ -9,23 +9,8 @@
 
 #include "import/imported.hpp"
 #include "model/mesh_pieces.hpp"
-#include "model/scene.hpp"
 
 namespace hilo {
-namespace {
-
-/// The names that supports, joints, springs, loads and velocities of the scene lines speak of.
-std::set<std::string> names_at_work(const std::string& scene_lines) {
-  std::set<std::string> names;
-  const Scene scene = Scene::parse(scene_lines, "the deck's scene lines");
-  for (const char* section : {"motion", "joint", "spring", "load", "initial"})
-    for (const Entry& e : scene.entries(section))
-      for (const auto& [key, value] : e.values)
-        if (key == "on" || key == "a" || key == "b") names.insert(value.texts.begin(), value.texts.end());
-  return names;
-}
-
-}  // namespace
 
 void tell_untouched(Imported& in) {
   const Mesh& m = in.mesh;
@@ -39,30 +24,20 @@ void tell_untouched(Imported& in) {
   }
   if (regions.size() < 2) return;
   std::set<std::int64_t> reached;
-  std::vector<std::string> scenes;
-  for (const DeckCase& c : in.cases) scenes.push_back(c.scene);
-  if (in.cases.empty()) scenes.push_back(m.deck_scene);
   const auto all = m.all_names();
-  const std::set<std::string> known(all.begin(), all.end());
-  for (const std::string& scene : scenes) {
-    if (scene.empty()) continue;
-    const std::set<std::string> at_work = names_at_work(scene);
-    for (size_t a = 0; a < m.block.size(); ++a)
-      if (m.block[a] >= 0 && at_work.contains(m.block_name[static_cast<size_t>(m.block[a])])) reached.insert(piece[a]);
-    for (const std::string& name : at_work) {
-      if (!known.contains(name)) continue;  // a body, the ground
+  const std::set<std::string> known(all.begin(), all.end()), at_work = in.at_work({"motion", "joint", "spring", "load", "initial"});
+  for (size_t a = 0; a < m.block.size(); ++a)
+    if (m.block[a] >= 0 && at_work.contains(m.block_name[static_cast<size_t>(m.block[a])])) reached.insert(piece[a]);
+  for (const std::string& name : at_work)
+    if (known.contains(name))  // else a body, the ground
       for (const auto a : m.nodes_of(name, "")) reached.insert(piece[a]);
-    }
-  }
   std::vector<std::string> lines;
   for (const auto& [p, names] : regions)
     if (!reached.contains(p)) lines.push_back(fmt::format("{} (from cell {} on)", fmt::join(names, ", "), first[p]));
   if (lines.empty()) return;
-  const size_t shown = std::min<size_t>(lines.size(), 6);
-  in.notes.push_back(fmt::format("{} of {} solids share no node with another{}: {}{}", lines.size(), regions.size(),
+  in.notes.push_back(fmt::format("{} of {} solids share no node with another{}: {}", lines.size(), regions.size(),
                                  reached.empty() ? "" : ", and nothing of the deck holds, moves, loads or ties them",
-                                 fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), "; "),
-                                 lines.size() > shown ? fmt::format(" and {} more", lines.size() - shown) : ""));
+                                 some(lines, 6, "; ")));
 }
 
 }  // namespace hilo

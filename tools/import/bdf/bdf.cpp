@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <ranges>
 #include <unordered_set>
 
 #include "base/error.hpp"
@@ -37,12 +38,9 @@ void settle_densities(BdfDeck& deck, Imported& in) {
     m.mass = deck.mass_factor * (m.property != 0 ? p->second : m.mass);
   }
   if (deck.without_density.empty()) return;
-  std::string ids;
-  int n = 0;
-  for (const auto& [id, place] : deck.without_density)
-    if (++n <= 5) ids += fmt::format("{}{}", n > 1 ? ", " : "", id);
-  in.notes.push_back(fmt::format("{}: RHO is 0 or blank in {} of {} materials ({}{}): no density", deck.without_density.begin()->second, n,
-                                 deck.materials.size(), ids, n > 5 ? ", ..." : ""));
+  in.notes.push_back(fmt::format("{}: RHO is 0 or blank in {} of {} materials ({}): no density", deck.without_density.begin()->second,
+                                 deck.without_density.size(), deck.materials.size(),
+                                 some(std::views::keys(deck.without_density), 5, ", ", ", ...")));
 }
 
 /// The sets of one kind that no subcase takes.
@@ -190,7 +188,7 @@ void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine
     std::erase_if(in.not_read, [](const NotRead& n) { return n.what.starts_with("SUBCASE but "); });
     write_bdf_scene(deck, in, names, options);
     const BdfCase& c = cases.emplace_back(deck.chosen);
-    in.cases.push_back({number, !c.label.empty() ? c.label : !c.subtitle.empty() ? c.subtitle : c.title, in.mesh.deck_scene, in.not_read});
+    in.cases.push_back({number, !c.label.empty() ? c.label : !c.subtitle.empty() ? c.subtitle : c.title, in.scene, in.not_read});
   }
   join_told(deck, cases, in);
 }

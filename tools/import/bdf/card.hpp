@@ -59,7 +59,7 @@ void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards&
 void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in, std::optional<std::int64_t> subcase = {});
 /// The numbers of all subcases; an Error where there is none.
 std::vector<std::int64_t> subcases_of(const std::vector<BdfCaseLine>& lines, const std::string& path);
-/// The lines of a scene (mesh.deck_scene) and the sets they name.
+/// The lines of a scene (in.scene) and the sets they name.
 void write_bdf_scene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options);
 
 }  // namespace hilo

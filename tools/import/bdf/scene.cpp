@@ -16,7 +16,7 @@ BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const Imp
     : deck_(deck), in_(in), names_(names), options_(options), used_(deck.X.size(), 0) {
   for (const auto a : in.mesh.nodes) used_[static_cast<size_t>(a)] = 1;
   for (const auto& name : in.mesh.all_names())
-    if (!in.cases.empty()) made_.insert("set/" + name), made_.insert("facets/" + name);  // of the subcases before
+    if (!in.cases.empty()) scene_.take("set", name), scene_.take("facets", name);  // of the subcases before
   Eigen::AlignedBox3d box;
   for (const auto a : in.mesh.nodes) box.extend(X(a));
   for (const auto& b : deck.beams)
@@ -26,7 +26,7 @@ BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const Imp
     if (info(in.mesh.shape[c]).dimension != 2) of_solids_.insert(in.mesh.cell(c).begin(), in.mesh.cell(c).end());
 }
 
-std::string BdfScene::text() {
+SceneWriter BdfScene::write() {
   choose_loads();
   hold();
   find_masses();
@@ -46,21 +46,12 @@ std::string BdfScene::text() {
   line_loads();
   pairs();
   time();
-  if (tables_.empty() && head_.empty()) return "";
-  std::string s = "units = \"m-kg-s\"\n";
-  if (!deck_.chosen.title.empty()) s = fmt::format("title = {}\n", toml_text(deck_.chosen.title)) + s;
-  return s + head_ + tables_;
-}
-
-std::string BdfScene::unique(const std::string& section, const std::string& wish) {
-  std::string name = wish;
-  for (int i = 2; !made_.insert(section + "/" + name).second; ++i) name = fmt::format("{}_{}", wish, i);
-  return name;
+  scene_.begin(deck_.chosen.title, gravity_);
+  return scene_;
 }
 
 std::string BdfScene::set_of(Rows nodes, const std::string& wish, bool listed) {
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  sort_unique(nodes);
   const bool apart = listed && (options_.order == 2 || (options_.thicken && is_divided(in_)));
   if (set_by_rows_.empty())
     for (const auto& [name, set] : in_.mesh.node_sets) {
@@ -70,7 +61,7 @@ std::string BdfScene::set_of(Rows nodes, const std::string& wish, bool listed) {
       if (!of_cells.empty()) set_by_rows_.try_emplace(of_cells, name);
     }
   if (const auto known = set_by_rows_.find(nodes); known != set_by_rows_.end() && !apart) return known->second;
-  const std::string name = names_.nodes(unique("set", wish), nodes);
+  const std::string name = names_.nodes(scene_.unique("set", wish), nodes);
   if (apart)
     in_.as_listed.insert(name);
   else
@@ -91,12 +82,6 @@ BdfScene::End BdfScene::end(std::int64_t row) const {
   return used_[static_cast<size_t>(row)] ? End::node : End::nothing;
 }
 
-void BdfScene::joint(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b,
-                     const Vec3& at, const std::string& place) {
-  tables_ += joints_that_hold(components, axes, name, a, b, point(at), place,
-                              [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
-}
-
 void BdfScene::materials() {
   const Mesh& m = in_.mesh;
   std::map<std::int64_t, std::int64_t> property_of;  // region -> its first property
@@ -108,41 +93,43 @@ void BdfScene::materials() {
       if (const auto s = of_shell.find(m.cell_id[c]); s != of_shell.end()) property_of.try_emplace(m.region[c], s->second);
   }
   std::set<std::int64_t> used;
-  std::string lines;
+  SceneWriter regions;
   for (const auto& [r, property] : property_of) {
-    const std::string region = toml_text(m.region_name[static_cast<size_t>(r)]);
+    const std::string& name = m.region_name[static_cast<size_t>(r)];
     const auto mid = deck_.material_of.find(property);
     const auto mat = mid == deck_.material_of.end() ? deck_.materials.end() : deck_.materials.find(mid->second);
     if (mat == deck_.materials.end()) {
-      in_.notes.push_back(mid == deck_.material_of.end() ? fmt::format("region {}: no property {}, so no material", region, property)
-                                                         : fmt::format("region {}: no material {}", region, mid->second));
+      in_.notes.push_back(mid == deck_.material_of.end()
+                              ? fmt::format("region {}: no property {}, so no material", toml_text(name), property)
+                              : fmt::format("region {}: no material {}", toml_text(name), mid->second));
       continue;
     }
+    const DeckMaterial& law = mat->second;
     const auto area = deck_.area_of.find(property);
-    std::string keys = area != deck_.area_of.end() && area->second > 0
-                           ? fmt::format("area = {}\n", number(area->second * options_.scale * options_.scale, "m^2"))
-                           : "";
-    if (!mat->second.no_law.empty()) {
-      lines += fmt::format("\n# region {}: material {} has no law here ({}), give it one\n", region, mat->first, mat->second.no_law);
-    } else if (mat->second.kind == "orthotropic") {
-      keys = turned_material(property, mat->second) + keys;
-    } else if (!mat->second.elastic()) {
+    const bool has_area = area != deck_.area_of.end() && area->second > 0, turned = law.no_law.empty() && law.kind == "orthotropic",
+               told = law.no_law.empty() && !turned && !law.elastic();
+    if (!law.no_law.empty())
+      regions.comment(fmt::format("\n# region {}: material {} has no law here ({}), give it one", toml_text(name), mat->first, law.no_law));
+    if (!has_area && !turned && !told) continue;
+    SceneItem& region = regions.add("region", name, "");
+    if (turned) turned_material(property, law, region);
+    if (told) {
       used.insert(mat->first);
-      keys = fmt::format("material = {}\n", toml_text(mat->second.name)) + keys;
-      in_.notes.push_back(fmt::format("region {}: its material \"{}\" ({}) stands in the scene lines alone (--scene-out)", region,
-                                      mat->second.name, mat->second.kind));
+      region.set("material", law.name);
+      in_.notes.push_back(fmt::format("region {}: its material \"{}\" ({}) stands in the scene lines alone (--scene-out)", toml_text(name),
+                                      law.name, law.kind));
     }
-    if (!keys.empty()) lines += fmt::format("\n[region.{}]\n", region) + keys;
+    if (has_area) region.set("area", area->second * options_.scale * options_.scale * si("m^2"));
   }
-  for (const auto id : used) tables_ += deck_.materials.at(id).table(deck_.materials.at(id).name, options_.units);
-  tables_ += lines;
+  for (const auto id : used) deck_.materials.at(id).write(scene_, options_);
+  scene_.append(regions);
 }
 
 /// MAT8 of shells that lie in one plane, with its axes there; without a law where they or the layers turn.
-std::string BdfScene::turned_material(std::int64_t property, const DeckMaterial& m) {
+void BdfScene::turned_material(std::int64_t property, const DeckMaterial& m, SceneItem& region) {
   const auto none = [&](const std::string& what, const std::string& place) {
     in_.skip(what, place);
-    return fmt::format("# material {} has no law here ({}, {})\n", m.name, what, place);
+    region.comment(fmt::format("material {} has no law here ({}, {})", m.name, what, place));
   };
   const auto thin = deck_.thin.find(property);
   if (thin == deck_.thin.end()) return none("MAT8 of cells that are no shells", "");
@@ -166,8 +153,8 @@ std::string BdfScene::turned_material(std::int64_t property, const DeckMaterial&
   law.name = fmt::format("{}_pid_{}", m.name, property);
   law.set({"axis_1", {first.x(), first.y(), first.z()}, "1", true});
   law.set({"axis_2", {second.x(), second.y(), second.z()}, "1", true});
-  tables_ += law.table(law.name, options_.units);
-  return fmt::format("material = {}\n", toml_text(clean_name(law.name)));
+  law.write(scene_, options_);
+  region.set("material", clean_name(law.name));
 }
 
 /// What the supports of the subcase hold.
@@ -291,43 +278,15 @@ void BdfScene::supports() {
     if (still) add(fixed[still]);
     if (moves) add(moved[{moves, by}]);
   }
-  const auto parts = [](unsigned bits) {
-    std::string s;
-    for (unsigned k = 0; k < 3; ++k)
-      if (bits >> k & 1) s += fmt::format("{}\"{}\"", s.empty() ? "" : ", ", "xyz"[k]);
-    return s;
-  };
-  for (const auto& [bits, g] : fixed) {
-    const std::string set = set_of(g.rows, "support");
-    tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"fixed\"\nname = {}\non = {}\ncomponents = [{}]\n", g.place,
-                           toml_text(unique("motion", set)), toml_text(set), parts(bits));
-  }
-  for (const auto& [key, g] : moved) {
-    const std::string set = set_of(g.rows, "moved");
-    tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"translation\"\nname = {}\non = {}\ncomponents = [{}]\ndisplacement = {}\n",
-                           g.place, toml_text(unique("motion", set)), toml_text(set), parts(key.first),
-                           list(Vec3(key.second[0], key.second[1], key.second[2]), "m"));
-  }
+  for (const auto& [bits, g] : fixed) hold_set(scene_, set_of(g.rows, "support"), bits, {}, "", g.place);
+  for (const auto& [key, g] : moved)
+    hold_set(scene_, set_of(g.rows, "moved"), key.first, Vec3(Vec3(key.second.data()) * si("m")), "", g.place);
   for (const Askew& h : askew) {
     const std::string node = node_set(h.row);
-    tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\nb = {}\nat = {}\naxis = {}\n", h.place,
-                           toml_text(unique("joint", node + "_support")), toml_text(node), point(X(h.row)), direction(h.axis));
+    joint_to_slide(scene_, node + "_support", "", node, h.axis, point(X(h.row)), h.place);
   }
-  supports_of_bodies();
-}
-
-/// A body is held by a joint to the ground, or whole.
-void BdfScene::supports_of_bodies() {
-  for (const auto& [a, held] : body_held_) {
-    const std::string name = end_name(a), place = deck_.grids[static_cast<size_t>(a)].place;
-    std::string to = "ground";
-    if (held.bits == 63) {
-      tables_ += motion_of_body(unique("motion", name), name, held.by, point(X(a)), "", place);
-      continue;
-    }
-    if (held.by.any()) tables_ += moving_body(to = unique("body", name + "_moved"), held.by, point(X(a)), "", place);
-    joint(held.bits, axes(a), name + "_support", to, name, X(a), place);
-  }
+  for (const auto& [a, h] : body_held_)
+    hold_body(scene_, end_name(a), h.bits, axes(a), h.by, point(X(a)), "", deck_.grids[static_cast<size_t>(a)].place);
 }
 
 void BdfScene::time() {
@@ -335,27 +294,25 @@ void BdfScene::time() {
   const auto is = [&](std::initializer_list<const char*> words) {
     return std::any_of(words.begin(), words.end(), [&](const char* w) { return c.solution == w; });
   };
+  const auto n = deck_.modes.find(c.method);
+  const SceneValue modes = n != deck_.modes.end() && n->second > 0 ? SceneValue(n->second) : SceneValue();
   if (c.is_static()) {
     const bool linear = !c.solution.starts_with("106") && !c.solution.starts_with("NL");
-    tables_ += fmt::format("\n[time]{}\nanalysis = \"static\"\n",
-                           linear ? "   # linear in the deck; here displacements may be large, and loads act on the deformed shape" : "");
+    scene_.add("time", "", linear ? "linear in the deck; here displacements may be large, and loads act on the deformed shape" : "",
+               {{"analysis", "static"}});
   } else if (is({"103", "3", "SEMODES", "MODES", "NORMAL"})) {
-    tables_ += "\n[time]\nanalysis = \"modes\"\n";
-    const auto n = deck_.modes.find(c.method);
-    if (n != deck_.modes.end() && n->second > 0) tables_ += fmt::format("modes = {}\n", n->second);
+    scene_.add("time", "", "", {{"analysis", "modes"}, {"modes", modes}});
   } else if (is({"109", "9", "SEDTRAN", "129", "NLTRAN"}) && deck_.steps.contains(c.step)) {
     const auto& [end, step] = deck_.steps.at(c.step);
-    if (end > 0 && step > 0) tables_ += fmt::format("\n[time]\nend = {}\nstep = {}\n", number(end, "s"), number(step, "s"));
+    if (end > 0 && step > 0) scene_.add("time", "", "", {{"end", end * si("s")}, {"step", step * si("s")}});
   } else if (c.buckles()) {
-    tables_ += "\n[time]\nanalysis = \"buckling\"\n";
-    const auto n = deck_.modes.find(c.method);
-    if (n != deck_.modes.end() && n->second > 0) tables_ += fmt::format("modes = {}\n", n->second);
+    scene_.add("time", "", "", {{"analysis", "buckling"}, {"modes", modes}});
   } else if (!c.solution.empty())
     in_.skip("SOL " + c.solution.substr(0, 20), "executive control");
 }
 
 void write_bdf_scene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options) {
-  in.mesh.deck_scene = BdfScene(deck, in, names, options).text();
+  in.scene = BdfScene(deck, in, names, options).write();
 }
 
 }  // namespace hilo

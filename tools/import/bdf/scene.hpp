@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "base/param.hpp"
 #include "import/bdf/card.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
@@ -20,7 +19,7 @@ namespace hilo {
 class BdfScene {
  public:
   BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options);
-  std::string text();
+  SceneWriter write();
 
  private:
   enum class End { nothing, node, body, mean, ground };
@@ -28,7 +27,7 @@ class BdfScene {
 
   // scene.cpp
   void materials();
-  std::string turned_material(std::int64_t property, const DeckMaterial& m);
+  void turned_material(std::int64_t property, const DeckMaterial& m, SceneItem& region);
   void hold();
   void supports();
   void equations();
@@ -36,7 +35,6 @@ class BdfScene {
   bool is_slide(const BdfEquation& m) const;
   bool is_joint(const BdfEquation& m) const;
   void sum_up(const BdfEquation& m);
-  void supports_of_bodies();
   void time();
   // scene_links.cpp
   void find_masses();
@@ -61,6 +59,8 @@ class BdfScene {
   void sliding_spring(const Vec3& axis, const std::string& name, std::int64_t a, std::int64_t b, double k, double c,
                       const std::string& place);
   void line_spring(const BdfSpring& s, double k, double c);
+  void axial_spring(const std::string& name, const std::string& a, const std::string& b, const Vec3& at_a, const Vec3& at_b, double k,
+                    double c, const std::string& place);
   void bush(const BdfSpring& s, const BdfSpringData& p);
   // scene_loads.cpp
   void choose_loads();
@@ -74,13 +74,8 @@ class BdfScene {
   void line_loads();
   Facet face_of_solid(const BdfLoad& l, std::int64_t element) const;
 
-  double si(const char* unit) const { return to_si(unit, options_.units); }
-  std::string number(double x, const char* unit) const { return toml_number(x * si(unit)); }
-  std::string list(const Vec3& v, const char* unit) const { return toml_list({v.x() * si(unit), v.y() * si(unit), v.z() * si(unit)}); }
-  std::string direction(const Vec3& v) const { return toml_list({v.x(), v.y(), v.z()}); }
-  /// A point of the geometry, which --scale scales too.
-  std::string point(const Vec3& x) const { return list(Vec3(x * options_.scale), "m"); }
-  std::string unique(const std::string& section, const std::string& wish);
+  double si(const char* unit) const { return options_.si(unit); }
+  Vec3 point(const Vec3& x) const { return options_.point(x); }
   /// The set of just these nodes: one that is there, or a new one.  `listed`: --order 2 must not complete it.
   std::string set_of(Rows nodes, const std::string& wish, bool listed = false);
   std::string node_set(std::int64_t row) { return set_of({row}, fmt::format("node_{}", deck_.node_id[static_cast<size_t>(row)]), true); }
@@ -97,9 +92,10 @@ class BdfScene {
     const BdfGrid& g = deck_.grids[static_cast<size_t>(row)];
     return axes_at(deck_, g.output.value_or(0), X(row), g.place);
   }
-  /// Joints that hold components (bits 0 to 5) along these axes.
   void joint(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b, const Vec3& at,
-             const std::string& place);
+             const std::string& place) {
+    joints_that_hold(scene_, components, axes, name, a, b, point(at), place);
+  }
   void spring_along(const Vec3& axis, const std::string& name, const std::string& a, std::int64_t b, double k, double c,
                     const std::string& place);
 
@@ -154,9 +150,9 @@ class BdfScene {
   std::vector<std::pair<double, const BdfLoad*>> loads_;
   std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
   std::map<std::int64_t, std::string> glue_name_;                        // region -> set
-  std::set<std::string> made_;                                           // names given, by section
   std::map<Rows, std::string> set_by_rows_;
-  std::string head_, tables_;
+  SceneWriter scene_;
+  SceneValue gravity_;
 };
 
 }  // namespace hilo

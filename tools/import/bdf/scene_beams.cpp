@@ -42,10 +42,9 @@ void BdfScene::beams() {
                                                 p.place, b.property)
                                   : fmt::format("{}: property {} has no J: a millionth of I1 + I2 is taken", p.place, b.property));
       sections_.emplace(b.property, ends);
-      if (have_scene_material(ends, m) && materials.insert(mat->first).second) tables_ += m.table(m.name, options_.units);
+      if (have_scene_material(ends, m) && materials.insert(mat->first).second) m.write(scene_, options_);
       for (size_t k = 0; k < (p.end.given() ? 2 : 1); ++k)
-        tables_ += section_table(section_name(b.property) + (k == 0 ? "" : "_end"), ends[k], ends[1 - k], m, options_.units, options_.scale,
-                                 p.place);
+        write_section(scene_, section_name(b.property) + (k == 0 ? "" : "_end"), ends[k], ends[1 - k], m, options_, p.place);
     }
     beam(b);
   }
@@ -107,24 +106,32 @@ void BdfScene::beam(const BdfDeck::Thin& b) {
   const double length = (at.b - at.a).norm();
   const std::vector<double> sections = sections_of(b, length);
   const DeckMaterial& m = deck_.materials.at(deck_.material_of.at(b.property));
-  const double metre = si("m") * options_.scale;
-  DeckBeam out{
-      .name = unique("beam", fmt::format("{}_{}", b.card, b.id)), .place = b.place, .section = section_name(b.property), .up = at.up};
-  for (const double s : sections) out.points.push_back(Vec3(s == length ? at.b : Vec3(at.a + s / length * (at.b - at.a))) * metre);
-  if (have_scene_material(sections_.at(b.property), m)) out.material = clean_name(m.name);
-  if (section_of_beam(deck_, b).end.given()) out.section_end = out.section + "_end";
-  for (size_t k = 0; k < 2; ++k)
-    if (!b.pins[k]) (k == 0 ? out.a : out.b) = end_name(row(b.nodes[k], b.place, b.card));
-  tables_ += beam_table(out);
+  const std::string name = scene_.unique("beam", fmt::format("{}_{}", b.card, b.id)), section = section_name(b.property);
+  std::vector<Vec3> points;
+  for (const double s : sections) points.push_back(point(s == length ? at.b : Vec3(at.a + s / length * (at.b - at.a))));
+  std::array<std::string, 2> grids, ends;  // bodies; an end with a pin has a section of its own
+  for (size_t k = 0; k < 2; ++k) {
+    grids[k] = end_name(row(b.nodes[k], b.place, b.card));
+    if (!b.pins[k]) ends[k] = grids[k];
+  }
+  scene_.add("beam", name, b.place,
+             {{"points", points},
+              {"cells", std::vector{1}},
+              {"section", section},
+              {"section_end", section_of_beam(deck_, b).end.given() ? section + "_end" : ""},
+              {"material", have_scene_material(sections_.at(b.property), m) ? clean_name(m.name) : ""},
+              {"orientation", at.up},
+              {"a", ends[0]},
+              {"b", ends[1]}});
   Mat3 own;  // x along, plane 1 holds y
   own.col(0) = (at.b - at.a).normalized();
   own.col(2) = own.col(0).cross(at.up).normalized();
   own.col(1) = own.col(2).cross(own.col(0));
-  made_beams_[b.id] = {out.name, own, at.a, sections, {out.a, out.b}, section_of_beam(deck_, b).section.shear_centre != std::array{0., 0.}};
+  made_beams_[b.id] = {name, own, at.a, sections, ends, section_of_beam(deck_, b).section.shear_centre != std::array{0., 0.}};
   for (size_t k = 0; k < 2; ++k)
     if (b.pins[k])
-      joint(63 & ~b.pins[k], own, out.name + (k == 0 ? "_pin_a" : "_pin_b"), end_name(row(b.nodes[k], b.place, b.card)),
-            out.name + (k == 0 ? ".0" : ".end"), k == 0 ? at.a : at.b, b.place);
+      joint(63 & ~b.pins[k], own, name + (k == 0 ? "_pin_a" : "_pin_b"), grids[k], name + (k == 0 ? ".0" : ".end"), k == 0 ? at.a : at.b,
+            b.place);
 }
 
 }  // namespace hilo

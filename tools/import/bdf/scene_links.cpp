@@ -219,19 +219,17 @@ void BdfScene::bodies() {
     const Vec3 arm = s.mass > 0 ? Vec3(s.first / s.mass) : Vec3(Vec3::Zero());
     const Mat3 J = s.inertia - s.mass * about(arm);
     const double i = si("kg m^2");
-    tables_ += fmt::format("\n[[body]]   # {}\nname = {}\nmass = {}\ncom = {}\n", place, toml_text(end_name(a)), number(s.mass, "kg"),
-                           point(X(a) + arm));
+    SceneItem& body = scene_.add("body", end_name(a), place, {{"mass", s.mass * si("kg")}, {"com", point(X(a) + arm)}});
     const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(J).eigenvalues();
     const bool of_no_body = moments[0] < 0 || moments[2] > (moments[0] + moments[1]) * (1 + 1e-9);
     if (of_no_body && (deck_.chosen.is_static() || deck_.chosen.buckles()))
       in_.notes.push_back(fmt::format("{}: no body has the inertia of this CONM2: it is left out, as it counts in no static run", place));
     else if (J.norm() > 0)
-      tables_ += fmt::format("inertia = {}\n", toml_list({J(0, 0) * i, J(1, 1) * i, J(2, 2) * i, J(0, 1) * i, J(0, 2) * i, J(1, 2) * i}));
+      body.set("inertia", {J(0, 0) * i, J(1, 1) * i, J(2, 2) * i, J(0, 1) * i, J(0, 2) * i, J(1, 2) * i});
   }
   for (const auto& [mass, group] : on_nodes) {
     const std::string set = set_of(group.first, "mass", true);
-    tables_ += fmt::format("\n[[point_mass]]   # {}\nname = {}\non = {}\nmass = {}\n", group.second, toml_text(unique("point_mass", set)),
-                           toml_text(set), number(mass * static_cast<double>(group.first.size()), "kg"));
+    scene_.add_unique("point_mass", set, group.second, {{"on", set}, {"mass", mass * static_cast<double>(group.first.size()) * si("kg")}});
   }
 }
 
@@ -247,9 +245,8 @@ void BdfScene::rigid(const BdfRigid& r) {
       const auto a = row(g, r.place, r.name);
       if (r.components != 0 && (r.components & 7) != 7) return in_.skip(fmt::format("{} of some components", r.name), r.place);
       if ((X(a) - X(hub)).norm() < 1e-9 * size_) return in_.skip(r.name + " of two nodes at one place", r.place);
-      tables_ +=
-          fmt::format("\n[[joint]]   # {}\nkind = \"distance\"\nname = {}\na = {}\nb = {}\nat_a = {}\nat_b = {}\n", r.place,
-                      toml_text(unique("joint", name)), toml_text(end_name(hub)), toml_text(end_name(a)), point(X(hub)), point(X(a)));
+      scene_.add_unique({"joint", "distance"}, name, r.place,
+                        {{"a", end_name(hub)}, {"b", end_name(a)}, {"at_a", point(X(hub))}, {"at_b", point(X(a))}});
     }
     return;
   }
@@ -303,9 +300,7 @@ void BdfScene::sum_up(const BdfEquation& m) {
   std::vector<SumTerm> terms;
   for (const auto& [r, way] : of)
     if (way != Vec3::Zero()) terms.push_back({end_name(r), point(X(r)), way});
-  if (!terms.empty())
-    tables_ += joints_of_sum(terms, "equation", m.place,
-                             [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
+  if (!terms.empty()) joints_of_sum(scene_, terms, "equation", m.place);
 }
 
 /// Two components of bodies that are equal: turns, or displacements at one place.
@@ -359,14 +354,11 @@ void BdfScene::equations() {
           held.second);
   std::map<Displacement, std::string> body;
   for (const auto& [x, up] : equals.all()) {
-    const std::string axis = direction(Vec3::Unit(x.second - 1));
+    const Vec3 axis = Vec3::Unit(x.second - 1), at = point(X(x.first));
     auto& name = body[equals.root(x)];
-    if (name.empty()) {
-      name = unique("body", fmt::format("equal_{}", "xyz"[x.second - 1]));
-      tables_ += sliding_body(name, unique("joint", name), axis, point(X(x.first)), place[x]);
-    }
+    if (name.empty()) name = sliding_body(scene_, scene_.unique("body", fmt::format("equal_{}", "xyz"[x.second - 1])), axis, at, place[x]);
     const std::string node = node_set(x.first);
-    tables_ += joint_to_slide(unique("joint", node + "_equal"), name, node, axis, point(X(x.first)), place[x]);
+    joint_to_slide(scene_, node + "_equal", name, node, axis, at, place[x]);
   }
 }
 

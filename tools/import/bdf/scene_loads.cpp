@@ -102,7 +102,7 @@ void BdfScene::gravity() {
   Vec3 g = Vec3::Zero();
   for (const auto& [factor, l] : loads_)
     if (l->kind == BdfLoad::Kind::gravity) g += factor * l->size * (axes_at(deck_, l->system, Vec3::Zero(), l->place) * l->direction);
-  if (g.norm() > 0) head_ += fmt::format("gravity = {}\n", list(g, "m/s^2"));
+  if (g.norm() > 0) gravity_ = g * si("m/s^2");
 }
 
 /// Of all solids, by load; the angular velocity is that of the entry times the length of its direction.
@@ -125,9 +125,8 @@ void BdfScene::rotation() {
     spins_.push_back({at, omega * axis.normalized(), l->place});
     for (size_t r = 0; r < has.size(); ++r)
       if (has[r])
-        tables_ += fmt::format("\n[[load]]   # {}\nkind = \"centrifugal\"\nname = {}\non = {}\nat = {}\naxis = {}\nspeed = {}\n", l->place,
-                               toml_text(unique("load", in_.mesh.region_name[r] + "_centrifugal")), toml_text(in_.mesh.region_name[r]),
-                               point(at), direction(axis.normalized()), toml_number(std::abs(speed)));
+        scene_.add_unique({"load", "centrifugal"}, in_.mesh.region_name[r] + "_centrifugal", l->place,
+                          {{"on", in_.mesh.region_name[r]}, {"at", point(at)}, {"axis", axis.normalized()}, {"speed", std::abs(speed)}});
   }
 }
 
@@ -156,9 +155,8 @@ void BdfScene::rotation_of_bodies() {
       const MadeBeam& beam = made_beams_.at(b.id);
       const Vec3 from = mass * pull(beam.start), to = mass * pull(beam.start + beam.length() * beam.axes.col(0));
       if (from.norm() + to.norm() == 0) continue;
-      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"line\"\nname = {}\non = {}\nforce_per_length = {}\nforce_per_length_end = {}\n",
-                             spin.place, toml_text(unique("load", beam.name + "_centrifugal")), toml_text(beam.name), list(from, "N/m"),
-                             list(to, "N/m"));
+      scene_.add_unique({"load", "line"}, beam.name + "_centrifugal", spin.place,
+                        {{"on", beam.name}, {"force_per_length", from * si("N/m")}, {"force_per_length_end", to * si("N/m")}});
     }
   }
 }
@@ -252,8 +250,7 @@ void BdfScene::nodal_loads() {
     if (v.norm() == 0) continue;
     const End what = end(a);
     if (what == End::body) {
-      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nat = {}\n", place,
-                             toml_text(unique("load", end_name(a))), toml_text(end_name(a)), list(v, "N"), point(X(a)));
+      scene_.add_unique({"load", "force"}, end_name(a), place, {{"on", end_name(a)}, {"force", v * si("N")}, {"at", point(X(a))}});
     } else if (what == End::node) {
       Vec3 each = v;
       if (is_of_shell(a)) {  // each node of its pairs takes its share
@@ -274,8 +271,7 @@ void BdfScene::nodal_loads() {
                     on_divided));
   for (const auto& [v, group] : equal) {
     const std::string set = set_of(group.first, "force", true);
-    tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", group.second,
-                           toml_text(unique("load", set)), toml_text(set), list(v, "N"));
+    scene_.add_unique({"load", "force"}, set, group.second, {{"on", set}, {"force", v * si("N")}, {"per_node", true}});
   }
   for (auto& [a, m] : moment_) {
     if (is_of_shell(a) && !on_beam_.contains(a) && is_flat(sheets(a))) {
@@ -285,8 +281,7 @@ void BdfScene::nodal_loads() {
       m.first -= n * n.dot(m.first);
     }
     if (m.first.norm() > 0)
-      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"torque\"\nname = {}\non = {}\ntorque = {}\n", m.second,
-                             toml_text(unique("load", end_name(a) + "_torque")), toml_text(end_name(a)), list(m.first, "N m"));
+      scene_.add_unique({"load", "torque"}, end_name(a) + "_torque", m.second, {{"on", end_name(a)}, {"torque", m.first * si("N m")}});
   }
 }
 
@@ -310,22 +305,20 @@ void BdfScene::line_loads() {
     if (factor == 0 || (l->size == 0 && l->size_end == 0)) continue;
     if (from == to) {  // at a point
       const Vec3 value = factor * l->size * way;
-      const std::string on = beam.body(from), name = toml_text(unique("load", beam.name + "_point"));
+      SceneItem& load =
+          scene_.add_unique({"load", l->turns ? "torque" : "force"}, beam.name + "_point", l->place, {{"on", beam.body(from)}});
       if (l->turns)
-        tables_ += fmt::format("\n[[load]]   # {}\nkind = \"torque\"\nname = {}\non = {}\ntorque = {}\n", l->place, name, toml_text(on),
-                               list(value, "N m"));
+        load.set("torque", value * si("N m"));
       else
-        tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nat = {}\n", l->place, name,
-                               toml_text(on), list(value, "N"), point(beam.start + beam.sections[from] * beam.axes.col(0)));
+        load.set("force", value * si("N")).set("at", point(beam.start + beam.sections[from] * beam.axes.col(0)));
       continue;
     }
     const Vec3 one = factor * (l->projected ? beam.axes.col(0).cross(way).norm() : 1) * way;
     if (one.norm() == 0) continue;
-    tables_ += fmt::format("\n[[load]]   # {}\nkind = \"line\"\nname = {}\non = {}\nforce_per_length = {}\n", l->place,
-                           toml_text(unique("load", beam.name + "_line")), toml_text(beam.name), list(l->size * one, "N/m"));
-    if (l->size_end != l->size) tables_ += fmt::format("force_per_length_end = {}\n", list(l->size_end * one, "N/m"));
-    if (from > 0) tables_ += fmt::format("from = {}\n", number(beam.sections[from] * options_.scale, "m"));
-    if (to + 1 < beam.sections.size()) tables_ += fmt::format("to = {}\n", number(beam.sections[to] * options_.scale, "m"));
+    scene_.add_unique({"load", "line"}, beam.name + "_line", l->place, {{"on", beam.name}, {"force_per_length", l->size * one * si("N/m")}})
+        .set_if(l->size_end != l->size, "force_per_length_end", l->size_end * one * si("N/m"))
+        .set_if(from > 0, "from", beam.sections[from] * options_.scale * si("m"))
+        .set_if(to + 1 < beam.sections.size(), "to", beam.sections[to] * options_.scale * si("m"));
   }
 }
 
@@ -426,13 +419,12 @@ void BdfScene::pressures() {
   std::map<Vec3, std::pair<std::vector<Facet>, std::string>, Vec3Order> by_traction;
   for (const auto& [key, p] : traction)
     if (p.first.norm() > 0) by_traction[p.first].first.push_back({key.first, key.second}), by_traction[p.first].second = p.second;
-  const auto write = [&](const std::vector<Facet>& facets, const std::string& place, const char* kind, const std::string& value) {
-    const std::string set = names_.facets(unique("facets", kind), facets);
-    tables_ += fmt::format("\n[[load]]   # {}\nkind = \"{}\"\nname = {}\non = {}\n{} = {}\n", place, kind, toml_text(unique("load", set)),
-                           toml_text(set), kind, value);
+  const auto write = [&](const std::vector<Facet>& facets, const std::string& place, const char* kind, const SceneValue& value) {
+    const std::string set = names_.facets(scene_.unique("facets", kind), facets);
+    scene_.add_unique({"load", kind}, set, place, {{"on", set}, {kind, value}});
   };
-  for (const auto& [p, g] : by_pressure) write(g.first, g.second, "pressure", number(p, "Pa"));
-  for (const auto& [v, g] : by_traction) write(g.first, g.second, "traction", list(v, "Pa"));
+  for (const auto& [p, g] : by_pressure) write(g.first, g.second, "pressure", p * si("Pa"));
+  for (const auto& [v, g] : by_traction) write(g.first, g.second, "traction", v * si("Pa"));
 }
 
 }  // namespace hilo

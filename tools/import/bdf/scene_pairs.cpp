@@ -53,17 +53,13 @@ void BdfScene::pairs() {
           in_.skip(card + " of a region that is no BSURFS", g.place);
           continue;
         }
-        tables_ += fmt::format("\n[[{}]]   # {}\nname = {}\na = {}\nb = {}\n", section, g.place,
-                               toml_text(unique(section, fmt::format("{}_{}", name, id))), toml_text(a), toml_text(b));
-        keys(g);
+        keys(g, scene_.add_unique(section, fmt::format("{}_{}", name, id), g.place, {{"a", a}, {"b", b}}));
       }
   };
-  each(deck_.glue, deck_.glue_sums, taken.glue, "BGSET", "tie", "glue", [&](const BdfGlue& g) {
-    if (g.distance > 0) tables_ += fmt::format("gap = {}\n", number(g.distance * options_.scale, "m"));
-  });
-  each(deck_.contacts, deck_.contact_sums, taken.contact, "BCTSET", "contact", "contact", [&](const BdfGlue& g) {
-    if (g.friction > 0) tables_ += fmt::format("friction = {}\n", toml_number(g.friction));
-  });
+  each(deck_.glue, deck_.glue_sums, taken.glue, "BGSET", "tie", "glue",
+       [&](const BdfGlue& g, SceneItem& tie) { tie.set_if(g.distance > 0, "gap", g.distance * options_.scale * si("m")); });
+  each(deck_.contacts, deck_.contact_sums, taken.contact, "BCTSET", "contact", "contact",
+       [&](const BdfGlue& g, SceneItem& contact) { contact.set_if(g.friction > 0, "friction", g.friction); });
 }
 
 }  // namespace hilo

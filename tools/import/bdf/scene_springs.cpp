@@ -51,47 +51,45 @@ void BdfScene::spring_along(const Vec3& axis, const std::string& name, const std
                             const std::string& place) {
   const Vec3& at = X(b);
   if (k == 0 && end(b) == End::body) {
-    tables_ += fmt::format("\n[[spring]]   # {}\nkind = \"bushing\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\ndamping = {}\n", place,
-                           toml_text(unique("spring", name)), toml_text(a), toml_text(end_name(b)), point(at), direction(axis),
-                           toml_list({0, 0, c * si("N s/m")}));
+    scene_.add_unique({"spring", "bushing"}, name, place,
+                      {{"a", a}, {"b", end_name(b)}, {"at", point(at)}, {"axis", axis}, {"damping", {0, 0, c * si("N s/m")}}});
     return;
   }
   if (k == 0 && a == "ground") return sliding_spring(axis, name, -1, b, k, c, place);
   if (k == 0) return in_.skip(name.substr(0, name.find('_')) + ": damping without stiffness between a body and a node of solids", place);
-  tables_ +=
-      fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\nstiffness = {}\n", place,
-                  toml_text(unique("joint", name)), toml_text(a), toml_text(end_name(b)), point(at), direction(axis), number(k, "N/m"));
-  if (c > 0) tables_ += fmt::format("damping = {}\n", number(c, "N s/m"));
+  scene_
+      .add_unique({"joint", "in-plane"}, name, place,
+                  {{"a", a}, {"b", end_name(b)}, {"at", point(at)}, {"axis", axis}, {"stiffness", k * si("N/m")}})
+      .set_if(c > 0, "damping", c * si("N s/m"));
 }
 
 /// A body of no mass slides along the axis with b, on the ground or on another that slides with a: the force acts along the axis at each
 /// grid, wherever they are.
 void BdfScene::sliding_spring(const Vec3& axis, const std::string& name, std::int64_t a, std::int64_t b, double k, double c,
                               const std::string& place) {
-  const std::string way = direction(axis);
   const auto slider = [&](const std::string& wish, const std::string& on, std::int64_t grid) {
-    const std::string body = unique("body", wish), at = point(X(grid));
-    tables_ += sliding_body(body, "", "", at, place);
-    tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"prismatic\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\n", place,
-                           toml_text(unique("joint", body)), toml_text(on), toml_text(body), at, way);
-    tables_ += joint_to_slide(unique("joint", body + "_end"), body, end_name(grid), way, at, place);
+    const std::string body = massless_body(scene_, scene_.unique("body", wish), point(X(grid)), place);
+    scene_.add_unique({"joint", "prismatic"}, body, place, {{"a", on}, {"b", body}, {"at", point(X(grid))}, {"axis", axis}});
+    joint_to_slide(scene_, body + "_end", body, end_name(grid), axis, point(X(grid)), place);
     return body;
   };
   const std::string on = a < 0 ? "ground" : slider(name + "_carrier", "ground", a), body = slider(name + "_slide", on, b);
   const Vec3 from = X(b), to = from + 4 * size_ * axis;  // far enough that the distance is the slide and a constant
-  tables_ += fmt::format(
-      "\n[[spring]]   # {}\nkind = \"axial\"\nname = {}\na = {}\nb = {}\nat_a = {}\nat_b = {}\nstiffness = {}\ndamping = {}\n", place,
-      toml_text(unique("spring", name)), toml_text(on), toml_text(body), point(from), point(to), number(k, "N/m"), number(c, "N s/m"));
+  axial_spring(name, on, body, from, to, k, c, place);
+}
+
+void BdfScene::axial_spring(const std::string& name, const std::string& a, const std::string& b, const Vec3& at_a, const Vec3& at_b,
+                            double k, double c, const std::string& place) {
+  scene_.add_unique(
+      {"spring", "axial"}, name, place,
+      {{"a", a}, {"b", b}, {"at_a", point(at_a)}, {"at_b", point(at_b)}, {"stiffness", k * si("N/m")}, {"damping", c * si("N s/m")}});
 }
 
 void BdfScene::line_spring(const BdfSpring& s, double k, double c) {
   if (s.grids[0] == 0 || s.grids[1] == 0 || s.system) return in_.skip(s.name + " to the ground, or in a system", s.place);
   const auto a = row(s.grids[0], s.place, s.name), b = row(s.grids[1], s.place, s.name);
   if ((X(b) - X(a)).norm() < 1e-9 * size_) return in_.skip(s.name + " of no length", s.place);
-  tables_ +=
-      fmt::format("\n[[spring]]   # {}\nkind = \"axial\"\nname = {}\na = {}\nb = {}\nat_a = {}\nat_b = {}\nstiffness = {}\ndamping = {}\n",
-                  s.place, toml_text(unique("spring", fmt::format("{}_{}", s.name, s.id))), toml_text(end_name(a)), toml_text(end_name(b)),
-                  point(X(a)), point(X(b)), number(k, "N/m"), number(c, "N s/m"));
+  axial_spring(fmt::format("{}_{}", s.name, s.id), end_name(a), end_name(b), X(a), X(b), k, c, s.place);
 }
 
 void BdfScene::scalar_spring(const BdfSpring& s, double k, double c) {
@@ -107,11 +105,13 @@ void BdfScene::scalar_spring(const BdfSpring& s, double k, double c) {
   if (of_b > 3) {
     if (end(b) != End::body || (a >= 0 && end(a) != End::body))
       return in_.skip(s.name + " on the rotation of a node of solids, which does not turn", s.place);
-    tables_ += fmt::format(
-        "\n[[spring]]   # {}\nkind = \"bushing\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\nangular_stiffness = {}\nangular_damping = "
-        "{}\n",
-        s.place, toml_text(unique("spring", name)), toml_text(end_name(a)), toml_text(end_name(b)), point(X(b)), direction(axis),
-        toml_list({0, 0, k * si("N m/rad")}), toml_list({0, 0, c * si("N m s/rad")}));
+    scene_.add_unique({"spring", "bushing"}, name, s.place,
+                      {{"a", end_name(a)},
+                       {"b", end_name(b)},
+                       {"at", point(X(b))},
+                       {"axis", axis},
+                       {"angular_stiffness", {0, 0, k * si("N m/rad")}},
+                       {"angular_damping", {0, 0, c * si("N m s/rad")}}});
     return;
   }
   const bool apart = gap.norm() > 1e-9 * size_;
@@ -146,14 +146,17 @@ void BdfScene::bush(const BdfSpring& s, const BdfSpringData& p) {
   const auto turns = [&](std::int64_t at) { return at < 0 || end(at) == End::body; };
   if (turns(a) && turns(b)) {
     const Vec3 at = apart ? Vec3(X(a) + s.share * gap) : X(b);
-    const auto six = [&](const std::array<double, 6>& v, size_t from, const char* unit) {
-      return toml_list({v[from] * si(unit), v[from + 1] * si(unit), v[from + 2] * si(unit)});
-    };
-    tables_ += fmt::format(
-        "\n[[spring]]   # {}\nkind = \"bushing\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\nx = {}\nstiffness = {}\ndamping = {}\n"
-        "angular_stiffness = {}\nangular_damping = {}\n",
-        s.place, toml_text(unique("spring", name)), toml_text(end_name(a)), toml_text(end_name(b)), point(at), direction(own.col(2)),
-        direction(own.col(0)), six(p.k, 0, "N/m"), six(p.c, 0, "N s/m"), six(p.k, 3, "N m/rad"), six(p.c, 3, "N m s/rad"));
+    const auto three = [&](const std::array<double, 6>& v, size_t from, const char* unit) { return Vec3(Vec3(&v[from]) * si(unit)); };
+    scene_.add_unique({"spring", "bushing"}, name, s.place,
+                      {{"a", end_name(a)},
+                       {"b", end_name(b)},
+                       {"at", point(at)},
+                       {"axis", own.col(2)},
+                       {"x", own.col(0)},
+                       {"stiffness", three(p.k, 0, "N/m")},
+                       {"damping", three(p.c, 0, "N s/m")},
+                       {"angular_stiffness", three(p.k, 3, "N m/rad")},
+                       {"angular_damping", three(p.c, 3, "N m s/rad")}});
     return;
   }
   if (turns(b)) std::swap(a, b);

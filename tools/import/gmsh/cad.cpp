@@ -162,14 +162,6 @@ class Prints {
   std::map<std::string, std::vector<int>> groups_;
 };
 
-std::string listed(const std::set<std::string>& names) {
-  std::string text;
-  int n = 0;
-  for (const auto& name : names)
-    if (++n <= 6) text += (n > 1 ? ", " : "") + name;
-  return n > 6 ? text + fmt::format(" and {} more", n - 6) : text;
-}
-
 }  // namespace
 
 std::optional<LengthUnit> step_unit(const std::string& text) {
@@ -271,7 +263,7 @@ void join_touching(bool keep_apart, const std::vector<NamedEntity>& named, std::
   if (shared)
     notes.push_back(
         fmt::format("{} faces of solids that touch have their nodes in common, as if glued (--keep-apart leaves solids apart): {}", shared,
-                    listed(pairs)));
+                    some(pairs, 6)));
   of_faces.make_groups(notes);
   of_edges.make_groups(notes);
   std::set<std::string> all;

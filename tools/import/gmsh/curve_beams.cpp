@@ -8,8 +8,8 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "import/deck_beams.hpp"
 #include "model/scene.hpp"
+#include "physics/beam_section.hpp"
 
 namespace hilo {
 namespace {
@@ -18,7 +18,7 @@ using Way = std::vector<std::int64_t>;  // nodes along a beam
 constexpr const char* example = "as in 'rail=tube:diameter=60,thickness=3'";
 
 /// [section.NAME] in SI: lengths are in the unit of the file.
-std::string section_lines(const std::string& group, const std::string& words, double metre) {
+void write_section(SceneWriter& out, const std::string& group, const std::string& words, double metre) {
   const std::string option = fmt::format("--beams {}={}", group, words);
   const size_t colon = std::min(words.find(':'), words.size());
   const std::string kind = words.substr(0, colon), keys = colon < words.size() ? words.substr(colon + 1) : "";
@@ -28,16 +28,15 @@ std::string section_lines(const std::string& group, const std::string& words, do
     const Entry& e = scene.entries("section").front();
     const SectionKind& of = section_kinds().at(e.kind, option);
     if (!of.area) throw Error("", fmt::format("a section of kind {} is written into the scene", e.kind), "any kind with sizes here");
-    std::string out = fmt::format("\n[section.{}]\nkind = {}\n", toml_text(group), toml_text(e.kind));
+    SceneItem& section = out.add({"section", e.kind}, group, "");
     std::vector<Param> keys_of = of.keys;
     keys_of.push_back({"shear", Type::numbers, "", "", ""});
     for (const Param& key : keys_of) {
       if (!e.given(key.key)) continue;
       if (key.type != Type::number) throw Error("", fmt::format("{} is written into the scene", key.key), "leave it out here");
       const double power = key.unit == "m" ? 1 : key.unit == "m^2" ? 2 : key.unit == "m^4" ? 4 : 0;
-      out += fmt::format("{} = {}\n", key.key, toml_number(e.number(key.key) * std::pow(metre, power)));
+      section.set(key.key, e.number(key.key) * std::pow(metre, power));
     }
-    return out;
   } catch (const Error& e) {
     throw Error("", option + ": " + e.message, e.hint.empty() ? example : e.hint, Exit::usage);
   }
@@ -91,11 +90,12 @@ size_t CurveBeams::n_lines() const {
   return sum;
 }
 
-std::string CurveBeams::scene(Imported& in, const std::map<std::int64_t, std::vector<std::string>>& points) const {
+SceneWriter CurveBeams::scene(Imported& in, const std::map<std::int64_t, std::vector<std::string>>& points) const {
   const double metre = options_.scale * in.metre.value_or(to_si("m", options_.units));
   std::map<std::int64_t, std::vector<const std::string*>> groups_at;  // of each line end
   std::set<std::array<std::int64_t, 2>> known;
-  std::string out;
+  SceneWriter out, beams;
+  out.comment("# the material of the beams: [material.beams] with E, nu and density");
   for (const auto& [group, words] : sections_) {
     const auto lines = lines_.find(group);
     if (lines == lines_.end()) throw Error("", fmt::format("--beams {}: no curve group of this name has lines", group), "", Exit::usage);
@@ -104,7 +104,7 @@ std::string CurveBeams::scene(Imported& in, const std::map<std::int64_t, std::ve
         throw Error("", fmt::format("--beams {}: a line of this group is in the file twice, or in another group of beams too", group));
       groups_at[a].push_back(&group), groups_at[b].push_back(&group);
     }
-    out += section_lines(group, words, metre);
+    write_section(out, group, words, metre);
   }
   const std::set<std::int64_t> of_cells(in.mesh.nodes.begin(), in.mesh.nodes.end());
   if (const auto n = std::ranges::count_if(groups_at, [&](const auto& node) { return of_cells.contains(node.first); }))
@@ -114,28 +114,30 @@ std::string CurveBeams::scene(Imported& in, const std::map<std::int64_t, std::ve
     if (groups.size() != 2 || *groups[0] != *groups[1]) stops.insert(node);
   std::set<std::string> taken;
   std::map<std::int64_t, std::string> stands_on;  // the section of each node
-  std::string beams;
   for (const auto& [group, lines] : lines_) {
     const std::vector<Way> ways = ways_of(lines, stops);
     for (size_t w = 0; w < ways.size(); ++w) {
       const Way& way = ways[w];
       std::string name = ways.size() == 1 ? group : fmt::format("{}_{}", group, w + 1);
       while (!taken.insert(name).second) name += "_";
-      DeckBeam beam{.name = name, .place = "curve group " + group, .section = group, .material = "beams", .up = Vec3::Zero()};
-      for (const auto node : way) beam.points.push_back(in.mesh.X[static_cast<size_t>(node)] * metre);
+      std::vector<Vec3> X;
+      for (const auto node : way) X.push_back(in.mesh.X[static_cast<size_t>(node)] * metre);
       const bool closed = way.front() == way.back();
+      std::string a, b;
       for (size_t k = 0; k < way.size(); ++k) {
         const bool last = k + 1 == way.size();
         const auto [on, fresh] = stands_on.try_emplace(way[k], last ? name + ".end" : fmt::format("{}.{}", name, k));
-        if (!fresh && !closed) (last ? beam.b : beam.a) = on->second;
+        if (!fresh && !closed) (last ? b : a) = on->second;
       }
-      beams += beam_table(beam);
+      beams.add("beam", name, "curve group " + group,
+                {{"points", X}, {"cells", std::vector{1}}, {"section", group}, {"material", "beams"}, {"a", a}, {"b", b}});
     }
   }
   for (const auto& [node, names] : points)
     if (const auto on = stands_on.find(node); on != stands_on.end())
-      for (const std::string& name : names) out += fmt::format("# point {} is {}\n", name, on->second);
-  return "# the material of the beams: [material.beams] with E, nu and density\n" + out + beams;
+      for (const std::string& name : names) out.comment(fmt::format("# point {} is {}", name, on->second));
+  out.append(beams);
+  return out;
 }
 
 }  // namespace hilo

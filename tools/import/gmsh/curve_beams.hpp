@@ -20,7 +20,7 @@ class CurveBeams {
   void add(const std::string& group, std::int64_t a, std::int64_t b) { lines_[group].push_back({a, b}); }
   /// The sections and beams as lines of a scene, a beam for each way between ends, forks and borders of groups; the groups of points are
   /// named by the sections that stand on them.  Notes nodes that cells have too.  Errors: a group without lines.
-  std::string scene(Imported& in, const std::map<std::int64_t, std::vector<std::string>>& points) const;
+  SceneWriter scene(Imported& in, const std::map<std::int64_t, std::vector<std::string>>& points) const;
   size_t n_lines() const;
 
  private:

@@ -63,7 +63,7 @@ class GmshReading {
       std::map<std::int64_t, std::vector<std::string>> points;
       for (const auto& [tag, keys] : groups_[0])
         for (const auto node : group_nodes(keys)) points[node].push_back(group_name(0, tag));
-      in_.mesh.deck_scene = beams_.scene(in_, points);
+      in_.scene = beams_.scene(in_, points);
       in_.n_beams = static_cast<std::int64_t>(beams_.n_lines());
     }
     for (const auto& [key, name] : from_.group_name)
@@ -284,8 +284,7 @@ class GmshReading {
       for (const auto& b : entity.blocks)
         for (const auto tag : b.nodes) nodes.push_back(row(tag, 0));
     }
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    sort_unique(nodes);
     return nodes;
   }
 

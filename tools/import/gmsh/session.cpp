@@ -2,8 +2,6 @@
 #include "import/gmsh/session.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gmsh.h>
 #include <unistd.h>
 
@@ -52,14 +50,11 @@ std::string GmshSession::printed() {
 }
 
 std::string GmshSession::errors() {
-  constexpr size_t most = 6;
   std::vector<std::string> log, found;
   gmsh::logger::get(log);
   for (const auto& l : log)
     if (l.starts_with("Error: ") && std::ranges::find(found, l.substr(7)) == found.end()) found.push_back(l.substr(7));
-  const size_t more = found.size() > most ? found.size() - most : 0;
-  found.resize(found.size() - more);
-  return fmt::format("{}{}", fmt::join(found, "; "), more ? fmt::format("; and {} more", more) : "");
+  return some(found, 6, "; ", "; and {} more");
 }
 
 }  // namespace hilo

@@ -181,7 +181,7 @@ std::vector<NamedEntity> step_names(const std::string& text, double unit, std::v
     for (const long next : r->refers) self(self, next, depth + 1);
   };
   for (const long face : faces) add_edges(add_edges, face, 0);
-  std::ranges::sort(edges), edges.erase(std::ranges::unique(edges).begin(), edges.end());
+  sort_unique(edges);
   double size = 0;
   for (const auto& [dim, ids] : {std::pair(2, &faces), std::pair(1, &edges)}) {
     std::vector<StepItem> items;

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 
 #include "base/error.hpp"
-#include "base/param.hpp"
 #include "import/inp/ties.hpp"
 
 namespace hilo {
@@ -76,10 +75,7 @@ void find_beams(InpDeck& d, Imported& in) {
     }
 }
 
-std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const ImportOptions& o) {
-  const double metre = to_si("m", o.units) * o.scale;
-  const auto point = [&](const Vec3& x) { return toml_list({x.x() * metre, x.y() * metre, x.z() * metre}); };
-  std::string out;
+void write_beams(const InpDeck& d, Imported& in, SetNames& names, const ImportOptions& o, SceneWriter& scene) {
   std::set<std::string> materials;
   std::map<const InpSection*, std::array<std::string, 2>> written;  // names of section (stiff in shear or not), by B33
   const auto of = sections_of(d);
@@ -101,33 +97,36 @@ std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const I
         if (other != &s && used[thin] == name) name += fmt::format("_{}", written.size());
       if (m.alpha != 0 || m.beta != 0) in.skip("*DAMPING of beams", s.place);
       if (m.kind != "stvk" || !m.no_law.empty()) in.skip("*PLASTIC of beams, which are linear elastic", s.place);
-      if (with_material && !of_cells.contains(s.law) && materials.insert(s.law).second) out += m.table(m.name, o.units);
-      out += section_table(name, section, section, m, o.units, o.scale, s.place);
+      if (with_material && !of_cells.contains(s.law) && materials.insert(s.law).second) m.write(scene, o);
+      write_section(scene, name, section, section, m, o, s.place);
     }
     std::vector<Vec3> X;
     for (const auto node : b.nodes) X.push_back(d.bodies.at(node).X);
     const auto lines = b.nodes.size() == 3 ? halves(X[0], X[1], X[2]) : std::array<std::vector<Vec3>, 2>{X, {}};
     const size_t n = b.nodes.size() - 1;
     for (size_t k = 0; k < n; ++k) {
-      DeckBeam beam{.name = fmt::format("{}_{}", b.type, id),
-                    .place = b.place,
-                    .section = name,
-                    .material = with_material ? clean_name(m.name) : "",
-                    .points = lines[k],
-                    .up = Vec3::Zero(),
-                    .a = body_name(d, b.nodes[k]),
-                    .b = body_name(d, b.nodes[k + 1])};
-      beam.arc = beam.points.size() == 3;
-      if (n == 2) beam.name += k == 0 ? "a" : "b";
-      const Vec3 along = beam.points.back() - beam.points.front();
+      std::vector<Vec3> points = lines[k];
+      const Vec3 along = points.back() - points.front();
       if (!(along.norm() > 0)) throw Error(b.place, fmt::format("element {} has no length", id));
       const Vec3 v = direction_1(d, in.mesh, s, id, X[0]);
       if (!(along.cross(v).norm() > 1e-6 * along.norm() * v.norm()))
         throw Error(s.place, fmt::format("{}: element {} lies along the direction 1 of its section", s.card, id));
       const Vec3 n1 = (v - along * along.dot(v) / along.squaredNorm()).normalized(), n2 = along.normalized().cross(n1);
-      beam.up = s.along_n2 ? n2 : n1;
-      for (Vec3& x : beam.points) x = (x + s.off[0] * n1 + s.off[1] * n2) * metre;
-      out += beam_table(beam);
+      for (Vec3& x : points) x = o.point(x + s.off[0] * n1 + s.off[1] * n2);
+      scene.add("beam",
+                fmt::format("{}_{}{}", b.type, id,
+                            n == 1   ? ""
+                            : k == 0 ? "a"
+                                     : "b"),
+                b.place,
+                {{"points", points},
+                 {"cells", std::vector{1}},
+                 {"section", name},
+                 {"path", points.size() == 3 ? "arc" : ""},
+                 {"material", with_material ? clean_name(m.name) : ""},
+                 {"orientation", s.along_n2 ? n2 : n1},
+                 {"a", body_name(d, b.nodes[k])},
+                 {"b", body_name(d, b.nodes[k + 1])}});
     }
   }
   std::set<std::int64_t> nodes;
@@ -137,10 +136,9 @@ std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const I
   for (const auto node : nodes) {  // of solids too, which do not turn
     const std::string set = names.nodes(fmt::format("node_{}_of_cells", node), {d.node.at(node)});
     in.as_listed.insert(set);
-    out += fmt::format("\n[[joint]]   # {}\nkind = \"spherical\"\nname = \"node_{}_of_cells\"\na = {}\nb = {}\nat = {}\n",
-                       d.bodies.at(node).place, node, toml_text(body_name(d, node)), toml_text(set), point(d.bodies.at(node).X));
+    scene.add({"joint", "spherical"}, fmt::format("node_{}_of_cells", node), d.bodies.at(node).place,
+              {{"a", body_name(d, node)}, {"b", set}, {"at", o.point(d.bodies.at(node).X)}});
   }
-  return out;
 }
 
 }  // namespace hilo

@@ -361,7 +361,7 @@ InpSet& set_of_nodes(const std::string& name, InpDeck& deck);
 /// The shape of an element type, or an Error at the card that says why there is none.
 Shape inp_shape(const Card& card);
 
-/// Scene lines of the deck's materials, supports and loads (mesh.deck_scene), and the sets that they name.  `node_set` gives the final name
+/// Scene lines of the deck's materials, supports and loads (in.scene), and the sets that they name.  `node_set` gives the final name
 /// of a node set of the deck, `surface` that of a surface.
 void write_inp_scene(const InpDeck& deck, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
                      const std::map<std::string, std::string>& surface, const ImportOptions& options);
@@ -374,7 +374,7 @@ void find_beams(InpDeck& deck, Imported& in);
 /// Nodes of shells that pairs of nodes cannot stand for are bodies.
 void find_bodies_of_shells(InpDeck& deck, Imported& in);
 /// Sections, materials, beams and what ties their nodes to solids, as scene lines.
-std::string write_beams(const InpDeck& deck, Imported& in, SetNames& names, const ImportOptions& options);
+void write_beams(const InpDeck& deck, Imported& in, SetNames& names, const ImportOptions& options, SceneWriter& scene);
 /// Facets of the deck's faces: the local facet that has the corners of face `face` of an Abaqus element; -1 where there is none.
 int inp_facet(Shape shape, int face);
 /// Rows of the nodes, or cells, that a target names; numbers that no cell uses are left out.

@@ -160,8 +160,7 @@ std::vector<std::int64_t> bound(const InpReading& r, const DataLine& l, size_t f
                 suggest_name(std::string(l.text(field)), d.nset));
   ids = set->second.members;
   if (!set->second.unsorted) {
-    std::ranges::sort(ids);
-    ids.erase(std::ranges::unique(ids).begin(), ids.end());
+    sort_unique(ids);
   }
   for (const auto id : ids)
     if (!d.node.contains(id))

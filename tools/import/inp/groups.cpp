@@ -258,8 +258,7 @@ std::vector<std::int64_t> inp_nodes(const InpDeck& d, const std::string& target,
   }
   for (const auto i : set->second.members)
     if (const auto a = d.node.find(i); a != d.node.end()) rows.push_back(a->second);
-  std::sort(rows.begin(), rows.end());
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  sort_unique(rows);
   return rows;
 }
 
@@ -277,8 +276,7 @@ std::vector<std::int64_t> inp_cells(const InpDeck& d, const std::string& target,
   }
   for (const auto i : set->second.members)
     if (const auto c = d.cell.find(i); c != d.cell.end()) rows.push_back(c->second);
-  std::sort(rows.begin(), rows.end());
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  sort_unique(rows);
   return rows;
 }
 

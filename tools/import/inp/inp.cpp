@@ -285,8 +285,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   if (d.shape.empty() && d.beams.empty() && d.points.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
   unqualify(d);
   for (auto& [name, set] : d.elset) {  // *ELGEN gives its first element to the set that *ELEMENT gave it to
-    std::ranges::sort(set.members);
-    set.members.erase(std::ranges::unique(set.members).begin(), set.members.end());
+    sort_unique(set.members);
   }
   complete_pyramids(d);
   take_modal(d, in);

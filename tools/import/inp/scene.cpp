@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -27,11 +26,11 @@ InpScene::InpScene(const InpDeck& d, Imported& in, SetNames& names, const std::m
     if (info(in.mesh.shape[c]).dimension != 2) of_solids_.insert(in.mesh.cell(c).begin(), in.mesh.cell(c).end());
 }
 
-std::string InpScene::text() {
+SceneWriter InpScene::write() {
   gravity();
   materials();
-  tables_ += write_ties(d_, in_, names_, o_);
-  tables_ += write_beams(d_, in_, names_, o_);
+  write_ties(d_, in_, names_, o_, scene_);
+  write_beams(d_, in_, names_, o_, scene_);
   supports();
   supports_of_ties();
   slides();
@@ -47,21 +46,12 @@ std::string InpScene::text() {
   velocities();
   histories();
   time();
-  if (tables_.empty() && head_.empty()) return "";
-  std::string s = "units = \"m-kg-s\"\n";
-  if (!d_.title.empty()) s = fmt::format("title = {}\n", toml_text(d_.title)) + s;
-  return s + head_ + tables_;
-}
-
-std::string InpScene::unique(const std::string& section, const std::string& wish) {
-  std::string name = wish;
-  for (int i = 2; !used_.insert(section + "/" + name).second; ++i) name = fmt::format("{}_{}", wish, i);
-  return name;
+  scene_.begin(d_.title, gravity_);
+  return scene_;
 }
 
 std::string InpScene::set_of(const std::string& target, Rows nodes, const std::string& wish, bool each) {
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  sort_unique(nodes);
   const bool as_listed =
       each && (o_.order == 2 || (o_.thicken && is_divided(in_)));  // a force per node stays on the nodes it was given for
   if (!target.empty() && !as_listed) {
@@ -74,23 +64,20 @@ std::string InpScene::set_of(const std::string& target, Rows nodes, const std::s
   return name;
 }
 
-bool InpScene::history(const std::string& amplitude, const std::string& what, const std::string& place, std::string& line) {
-  line.clear();
-  if (amplitude.empty()) return true;
-  const auto a = d_.amplitudes.find(amplitude);
-  if (a == d_.amplitudes.end() || a->second.t.empty()) {
-    in_.skip(fmt::format("{} with *AMPLITUDE {}", what, amplitude), place);
-    return false;
+std::optional<std::string> InpScene::history(const std::string& amplitude, const std::string& what, const std::string& place) {
+  if (amplitude.empty()) return "";
+  if (const auto a = d_.amplitudes.find(amplitude); a != d_.amplitudes.end() && !a->second.t.empty()) {
+    wanted_.insert(amplitude);
+    return clean_name(a->second.name);
   }
-  wanted_.insert(amplitude);
-  line = fmt::format("history = {}\n", toml_text(clean_name(a->second.name)));
-  return true;
+  in_.skip(fmt::format("{} with *AMPLITUDE {}", what, amplitude), place);
+  return std::nullopt;
 }
 
 void InpScene::materials() {
   std::set<std::string> used;
   const Mesh& m = in_.mesh;
-  std::vector<std::string> lines(m.region_name.size());
+  std::vector<SceneWriter> regions(m.region_name.size());
   std::vector<int> seen(m.region_name.size(), 0);
   std::vector<const InpSection*> of_cell(m.shape.size(), nullptr);  // the last section that has it, as in region_materials()
   for (const auto& s : d_.sections)
@@ -103,25 +90,24 @@ void InpScene::materials() {
     const auto& mat = d_.laws.at(s.law);
     if (!mat.no_law.empty() || (mat.kind == "stvk" && std::isnan(mat.data.E))) {
       const std::string why = mat.no_law.empty() ? "no *ELASTIC" : mat.no_law;
-      lines[r] = fmt::format("# region {}: {} has no law here ({}), give it one\n", toml_text(m.region_name[r]),
-                             mat.name.empty() ? "it" : "material " + toml_text(mat.name), why);
+      regions[r].comment(fmt::format("\n# region {}: {} has no law here ({}), give it one", toml_text(m.region_name[r]),
+                                     mat.name.empty() ? "it" : "material " + toml_text(mat.name), why));
       in_.skip(fmt::format("*MATERIAL of region {}: no law of hilo ({})", toml_text(m.region_name[r]), why), s.place, 1, false,
                "give it one in the scene");
       continue;
     }
     used.insert(s.law);
-    lines[r] = fmt::format("[region.{}]\nmaterial = {}\n", toml_text(m.region_name[r]), toml_text(clean_name(mat.name)));
-    if (static_cast<Shape>(m.shape[c]) == Shape::bar2 && s.area > 0)
-      lines[r] += fmt::format("area = {}\n", num(s.area * o_.scale * o_.scale * si("m^2")));
     const double alpha = d_.plan.modal ? d_.plan.alpha : mat.alpha, beta = d_.plan.modal ? d_.plan.beta : mat.beta;
-    if (alpha != 0) lines[r] += fmt::format("mass_damping = {}\n", num(alpha / si("s")));
-    if (beta != 0) lines[r] += fmt::format("damping = {}\n", num(beta * si("s")));
-    if (d_.plan.ratio > 0) lines[r] += fmt::format("modal_damping = {}\n", num(d_.plan.ratio));
+    regions[r]
+        .add("region", m.region_name[r], "", {{"material", clean_name(mat.name)}})
+        .set_if(static_cast<Shape>(m.shape[c]) == Shape::bar2 && s.area > 0, "area", s.area * o_.scale * o_.scale * si("m^2"))
+        .set_if(alpha != 0, "mass_damping", alpha / si("s"))
+        .set_if(beta != 0, "damping", beta * si("s"))
+        .set_if(d_.plan.ratio > 0, "modal_damping", d_.plan.ratio);
   }
   if (!d_.beams.empty() && (d_.plan.alpha != 0 || d_.plan.beta != 0 || d_.plan.ratio > 0)) in_.skip("*MODAL DAMPING of beams", "", 1);
-  for (const auto& key : used) tables_ += d_.laws.at(key).table(d_.laws.at(key).name, o_.units);
-  for (const auto& l : lines)
-    if (!l.empty()) tables_ += "\n" + l;
+  for (const auto& key : used) d_.laws.at(key).write(scene_, o_);
+  for (const auto& region : regions) scene_.append(region);
 }
 
 void InpScene::histories() {
@@ -129,10 +115,9 @@ void InpScene::histories() {
     const auto& a = d_.amplitudes.at(key);
     std::vector<double> t = a.t;
     for (auto& x : t) x *= si("s");
-    tables_ += fmt::format("\n[history.{}]\nt = {}\nvalue = {}\n", toml_text(clean_name(a.name)), toml_list(t), toml_list(a.value));
+    SceneItem& out = scene_.add("history", clean_name(a.name), "", {{"t", t}, {"value", a.value}});
     if (!a.slopes.empty())
-      tables_ += fmt::format("interpolation = \"spline\"\nends = \"clamped\"\nslopes = {}\n",
-                             toml_list({a.slopes[0] / si("s"), a.slopes[1] / si("s")}));
+      out.set("interpolation", "spline").set("ends", "clamped").set("slopes", {a.slopes[0] / si("s"), a.slopes[1] / si("s")});
   }
 }
 
@@ -141,16 +126,13 @@ void InpScene::histories() {
 double InpScene::dynamic_step(double end) {
   const double given = d_.plan.increment > 0 ? d_.plan.increment : end;
   if (d_.plan.direct) return given;
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : in_.mesh.X) box.extend(x);
-  for (const auto& [id, body] : d_.bodies) box.extend(body.X);
   double fastest = 0;
   for (const RegionData& r : in_.mesh.region_data)
     if (r.E > 0 && r.density > 0) fastest = std::max(fastest, std::sqrt(r.E / r.density));
   if (!d_.beams.empty())
     for (const auto& [name, m] : d_.laws)
       if (m.data.E > 0 && m.data.density > 0) fastest = std::max(fastest, std::sqrt(m.data.E / m.data.density));
-  const double wave = fastest > 0 ? box.diagonal().norm() / fastest / 5 : end / 100;
+  const double wave = fastest > 0 ? size_of(d_, in_.mesh) / fastest / 5 : end / 100;
   const double step = std::min({given, std::max(wave, end / 1000), end / 20});
   in_.notes.push_back(fmt::format(
       "*DYNAMIC without DIRECT: a step of {:g}{}", step * si("s"),
@@ -161,43 +143,40 @@ double InpScene::dynamic_step(double end) {
 void InpScene::time() {
   const InpPlan& plan = d_.plan;
   const double deck_end = plan.end > 0 ? plan.end : 1, end = deck_end * si("s");
-  const char* start = plan.from_equilibrium ? "start = \"equilibrium\"\n" : "";
+  const std::string start = plan.from_equilibrium ? "equilibrium" : "";
   if (plan.procedure == "*STATIC") {
-    tables_ += "\n[time]\nanalysis = \"static\"\n";
-    if (!wanted_.empty()) tables_ += fmt::format("end = {}\n", num(end));
     int steps = plan.steps;
     const bool yields = std::ranges::any_of(d_.laws, [](const auto& law) { return law.second.kind == "j2"; });
     if ((yields || !d_.contacts.empty() || !d_.every_pair.empty()) &&
         plan.increment > 0)  // what yields or rubs remembers how it came there
       steps = std::max(steps, static_cast<int>(std::ceil(std::min(100., deck_end / plan.increment - 1e-9))));
-    if (steps > 1) tables_ += fmt::format("steps = {}\n", steps);
+    scene_.add("time", "", "", {{"analysis", "static"}}).set_if(!wanted_.empty(), "end", end).set_if(steps > 1, "steps", steps);
   } else if (plan.procedure == "*DYNAMIC") {
-    tables_ += fmt::format("\n[time]\nend = {}\n", num(end));
-    tables_ += fmt::format("step = {}\n{}", num(dynamic_step(deck_end) * si("s")), start);
+    scene_.add("time", "", "", {{"end", end}, {"step", dynamic_step(deck_end) * si("s")}, {"start", start}});
   } else if (plan.procedure == "*BUCKLE") {
-    tables_ += "\n[time]\nanalysis = \"buckling\"\n";
-    if (!wanted_.empty()) tables_ += fmt::format("end = {}\n", num(end));
-    if (plan.n_modes > 0) tables_ += fmt::format("modes = {}\n", plan.n_modes);
+    scene_.add("time", "", "", {{"analysis", "buckling"}})
+        .set_if(!wanted_.empty(), "end", end)
+        .set_if(plan.n_modes > 0, "modes", plan.n_modes);
   } else if (plan.procedure == "*FREQUENCY") {
-    tables_ += fmt::format("\n[time]\nanalysis = \"modes\"\n{}", start);
-    if (plan.n_modes > 0) tables_ += fmt::format("modes = {}\n", plan.n_modes);
+    scene_.add("time", "", "", {{"analysis", "modes"}, {"start", start}}).set_if(plan.n_modes > 0, "modes", plan.n_modes);
     if (const InpSweep& sweep = plan.sweep; sweep.points > 0) {
       const double hertz = 1 / si("s");
       std::string then = fmt::format("hilo-post response modes.h5 --loads --at PROBE.AXIS --from {:g} --to {:g} --points {}",
                                      sweep.from * hertz, sweep.to * hertz, sweep.points);
       if (sweep.ratio > 0) then += fmt::format(" --damping {:g}", sweep.ratio);
       in_.notes.push_back(fmt::format("{}: *STEADY STATE DYNAMICS becomes an analysis of modes, and then `{}`", plan.place, then));
-      tables_ += fmt::format("# then: {}\n", then);
+      scene_.comment("# then: " + then);
       std::set<std::string> done;
       for (const std::string& set : d_.printed)
         if (const auto name = node_set_.find(set); name != node_set_.end() && !name->second.empty() && done.insert(set).second)
-          tables_ += fmt::format("\n[[probe]]\nname = {0}\non = {0}\n", toml_text(name->second));
+          scene_.add("probe", name->second, "", {{"on", name->second}});
     }
   }
 }
+
 void write_inp_scene(const InpDeck& d, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
                      const std::map<std::string, std::string>& surface, const ImportOptions& options) {
-  in.mesh.deck_scene = InpScene(d, in, names, node_set, surface, options).text();
+  in.scene = InpScene(d, in, names, node_set, surface, options).write();
 }
 
 }  // namespace hilo

@@ -2,11 +2,11 @@
 // The scene lines of an .inp deck, in the making: what its parts (supports, loads) share.
 #pragma once
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "base/param.hpp"
 #include "import/inp/groups.hpp"
 
 namespace hilo {
@@ -16,7 +16,7 @@ class InpScene {
  public:
   InpScene(const InpDeck& deck, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
            const std::map<std::string, std::string>& surface, const ImportOptions& options);
-  std::string text();
+  SceneWriter write();
 
  private:
   // scene.cpp
@@ -26,11 +26,10 @@ class InpScene {
   void time();
   // scene_supports.cpp
   void supports();
-  void write(const Held& h);
+  void hold(const Held& h);
   Mat3 axes_of(std::int64_t id) const;
   void supports_of_ties();
   void slides();
-  double length() const;
   void sums();
   // scene_mpcs.cpp
   struct MpcEnd {
@@ -52,7 +51,7 @@ class InpScene {
   void gravity();
   std::vector<std::int64_t> elements_of(const InpDistributed& p) const;
   void centrifugal();
-  void load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, const std::string& what);
+  void load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, std::initializer_list<SceneKey> keys);
   void forces();
   std::map<size_t, Rows> by_number_of_nodes(const Rows& nodes);
   std::string end_of(std::int64_t row, const std::string& wish);
@@ -61,30 +60,27 @@ class InpScene {
   void line_loads();
   void velocities();
 
-  static std::string num(double x) { return toml_number(x); }
-  static std::string list(const Vec3& v) { return toml_list({v.x(), v.y(), v.z()}); }
-  /// A point of the geometry, which --scale scales too.
-  std::string point(const Vec3& x) const { return list(Vec3(x * si("m") * o_.scale)); }
-  double si(const char* unit) const { return to_si(unit, o_.units); }
-  std::string unique(const std::string& section, const std::string& wish);
+  Vec3 point(const Vec3& x) const { return o_.point(x); }
+  double si(const char* unit) const { return o_.si(unit); }
   /// The set that holds just these nodes: the one named in the deck where it is that, else a new one.
   std::string set_of(const std::string& target, Rows nodes, const std::string& wish, bool each);
-  /// " history" line of an amplitude, or false when the deck's amplitude was not read.
-  bool history(const std::string& amplitude, const std::string& what, const std::string& place, std::string& line);
+  /// The name of an amplitude's [history.NAME], "" without one; nothing when the deck's amplitude was not read.
+  std::optional<std::string> history(const std::string& amplitude, const std::string& what, const std::string& place);
 
   const InpDeck& d_;
   Imported& in_;
   SetNames& names_;
   const std::map<std::string, std::string>&node_set_, &surface_;
   const ImportOptions& o_;
-  std::set<std::int64_t> own_axes_;      // the same by number, nodes of no cell too
-  std::vector<int> turned_;              // *TRANSFORM of each node, or -1
-  std::set<std::int64_t> of_solids_;     // rows, beside shells that become pairs
-  std::set<std::int64_t> of_beams_;      // numbers of nodes
-  std::set<std::string> used_, wanted_;  // names given; amplitudes that a line scales by
-  std::vector<std::int64_t> a_cell_;     // a solid one of each node, or -1; empty until asked for
-  std::map<std::string, int> made_;      // sets made of single nodes or elements
-  std::string head_, tables_;
+  std::set<std::int64_t> own_axes_;   // the same by number, nodes of no cell too
+  std::vector<int> turned_;           // *TRANSFORM of each node, or -1
+  std::set<std::int64_t> of_solids_;  // rows, beside shells that become pairs
+  std::set<std::int64_t> of_beams_;   // numbers of nodes
+  std::set<std::string> wanted_;      // amplitudes that a load or motion is scaled by
+  std::vector<std::int64_t> a_cell_;  // a solid one of each node, or -1; empty until asked for
+  std::map<std::string, int> made_;   // sets made of single nodes or elements
+  SceneWriter scene_;
+  SceneValue gravity_;
 };
 
 }  // namespace hilo

@@ -34,7 +34,7 @@ void InpScene::gravity() {
   for (const auto& [id, x] : beside) g.push_back(x);
   if (!any || g.empty()) return;
   if (!in_time && std::ranges::all_of(g, [&](const Vec3& x) { return x == g.front(); })) {
-    head_ += fmt::format("gravity = {}\n", list(Vec3(g.front() * si("m/s^2"))));
+    gravity_ = g.front() * si("m/s^2");
     return;
   }
   // what weighs in parts, or by a history, takes a load for each
@@ -42,8 +42,7 @@ void InpScene::gravity() {
     if (p.face != -1) continue;
     if (const auto ids = elements_of(p); std::ranges::any_of(ids, [&](std::int64_t id) { return beside.contains(id); }))
       in_.skip("*DLOAD GRAV on a part of the model, of masses and beams", p.place);
-    if (n_cells > 0)
-      load_of_mass(p, "acceleration", "gravity", fmt::format("acceleration = {}\n", list(Vec3(p.value * p.direction * si("m/s^2")))));
+    if (n_cells > 0) load_of_mass(p, "acceleration", "gravity", {{"acceleration", p.value * p.direction * si("m/s^2")}});
   }
 }
 
@@ -59,21 +58,19 @@ void InpScene::centrifugal() {
     if (p.face != -2 || p.value == 0) continue;
     if (const auto ids = elements_of(p); std::ranges::any_of(ids, [&](std::int64_t id) { return d_.beams.contains(id); }))
       in_.skip("*DLOAD CENTRIF on beams", p.place);
-    load_of_mass(p, "centrifugal", "centrifugal",
-                 fmt::format("at = {}\naxis = {}\nspeed = {}\n", point(p.at), list(p.direction), num(std::sqrt(p.value) / si("s"))));
+    load_of_mass(p, "centrifugal", "centrifugal", {{"at", point(p.at)}, {"axis", p.direction}, {"speed", std::sqrt(p.value) / si("s")}});
   }
 }
 
 /// On the regions that a line has whole, and on a set of the other cells.
-void InpScene::load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, const std::string& what) {
+void InpScene::load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, std::initializer_list<SceneKey> keys) {
   auto cells = inp_cells(d_, p.target, p.id, p.place);
-  std::string past;
-  if (cells.empty() || !history(p.amplitude, "*DLOAD", p.place, past)) return;
+  const auto past = cells.empty() ? std::nullopt : history(p.amplitude, "*DLOAD", p.place);
+  if (!past) return;
   const Mesh& m = in_.mesh;
   std::vector<std::int64_t> of_region(m.region_name.size(), 0), here(m.region_name.size(), 0);
   for (const auto r : m.region) ++of_region[static_cast<size_t>(r)];
-  std::ranges::sort(cells);
-  cells.erase(std::ranges::unique(cells).begin(), cells.end());
+  sort_unique(cells);
   for (const auto c : cells) ++here[static_cast<size_t>(m.region[static_cast<size_t>(c)])];
   std::vector<std::string> on;
   for (size_t r = 0; r < here.size(); ++r)
@@ -83,21 +80,21 @@ void InpScene::load_of_mass(const InpDistributed& p, const char* kind, const std
     return here[r] == of_region[r];
   });
   if (!cells.empty()) on.push_back(names_.cells(fmt::format("{}_{}", wish, ++made_[wish]), cells));
-  for (const std::string& name : on)
-    tables_ += fmt::format("\n[[load]]   # {}\nkind = \"{}\"\nname = {}\non = {}\n{}", p.place, kind,
-                           toml_text(unique("load", name + "_" + wish)), toml_text(name), what) +
-               past;
+  for (const std::string& name : on) {
+    SceneItem& load = scene_.add_unique({"load", kind}, name + "_" + wish, p.place, {{"on", name}});
+    for (const auto& [key, value] : keys) load.set(key, value);
+    load.set("history", *past);
+  }
 }
 
 void InpScene::forces() {
   for (const auto& g : nodal_groups(d_, d_.forces, "*CLOAD", true, turned_, in_)) {
-    std::string past;
-    if (g.value.norm() == 0 || !history(g.amplitude, "*CLOAD", g.place, past)) continue;
+    const auto past = g.value.norm() == 0 ? std::nullopt : history(g.amplitude, "*CLOAD", g.place);
+    if (!past) continue;
     for (const auto& [n, nodes] : by_number_of_nodes(g.nodes)) {
       const std::string set = set_of(g.target, nodes, "force", true);
-      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", g.place,
-                             toml_text(unique("load", set)), toml_text(set), list(Vec3(g.value * si("N") / static_cast<double>(n)))) +
-                 past;
+      scene_.add_unique({"load", "force"}, set, g.place,
+                        {{"on", set}, {"force", g.value * si("N") / static_cast<double>(n)}, {"per_node", true}, {"history", *past}});
     }
   }
 }
@@ -142,22 +139,17 @@ void InpScene::forces_of_ties() {
     });
   for (const auto& [key, s] : on_slide) {
     const std::string name = slide_name(d_, key.first);
-    std::string past;
-    if (s.F.norm() > 0 && history(key.second, "*CLOAD", s.place, past))
-      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\n", s.place,
-                             toml_text(unique("load", name)), toml_text(name), list(Vec3(s.F * si("N")))) +
-                 past;
+    if (const auto past = s.F.norm() > 0 ? history(key.second, "*CLOAD", s.place) : std::nullopt)
+      scene_.add_unique({"load", "force"}, name, s.place, {{"on", name}, {"force", s.F * si("N")}, {"history", *past}});
   }
   for (const auto& [key, s] : sums) {
-    std::string past;
-    if (!history(key.second, "*CLOAD", s.place, past)) continue;
+    const auto past = history(key.second, "*CLOAD", s.place);
+    if (!past) continue;
     if (d_.bodies.contains(key.first)) {
       const std::string name = body_name(d_, key.first);
       if (s.F.norm() > 0)
-        tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nat = {}\n", s.place,
-                               toml_text(unique("load", name)), toml_text(name), list(Vec3(s.F * si("N"))),
-                               list(Vec3(d_.bodies.at(key.first).X * si("m") * o_.scale))) +
-                   past;
+        scene_.add_unique({"load", "force"}, name, s.place,
+                          {{"on", name}, {"force", s.F * si("N")}, {"at", point(d_.bodies.at(key.first).X)}, {"history", *past}});
       Vec3 M = s.M;
       if (const auto a = d_.node.find(key.first); a != d_.node.end() && in_.sheets && !in_.sheets->at(a->second).empty() &&
                                                   !of_beams_.contains(key.first) && is_flat(in_.sheets->at(a->second))) {
@@ -167,9 +159,7 @@ void InpScene::forces_of_ties() {
         M -= n * n.dot(M);
       }
       if (M.norm() > 0)
-        tables_ += fmt::format("\n[[load]]   # {}\nkind = \"torque\"\nname = {}\non = {}\ntorque = {}\n", s.place,
-                               toml_text(unique("load", name + "_torque")), toml_text(name), list(Vec3(M * si("N m")))) +
-                   past;
+        scene_.add_unique({"load", "torque"}, name + "_torque", s.place, {{"on", name}, {"torque", M * si("N m")}, {"history", *past}});
       continue;
     }
     const InpMean& mean = d_.means.at(key.first);
@@ -186,9 +176,8 @@ void InpScene::forces_of_ties() {
       if ((*shares)[i].norm() > 0) {
         const auto n = static_cast<double>(by_number_of_nodes({rows[i]}).begin()->first);
         const std::string set = set_of("", {rows[i]}, "share", true);
-        tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", s.place,
-                               toml_text(unique("load", set)), toml_text(set), list(Vec3((*shares)[i] * si("N") / n))) +
-                   past;
+        scene_.add_unique({"load", "force"}, set, s.place,
+                          {{"on", set}, {"force", (*shares)[i] * si("N") / n}, {"per_node", true}, {"history", *past}});
       }
   }
 }
@@ -197,8 +186,8 @@ void InpScene::forces_of_ties() {
 void InpScene::line_loads() {
   for (const auto& p : d_.distributed) {
     if (p.face != -4 || p.value == 0) continue;
-    std::string past;
-    if (!history(p.amplitude, "*DLOAD", p.place, past)) continue;
+    const auto past = history(p.amplitude, "*DLOAD", p.place);
+    if (!past) continue;
     std::int64_t others = 0;
     for (const auto id : elements_of(p)) {
       const auto b = d_.beams.find(id);
@@ -210,10 +199,9 @@ void InpScene::line_loads() {
       const bool halves = b->second.nodes.size() == 3;
       for (const char* half : {"a", "b"})
         if (halves || *half == 'a')
-          tables_ += fmt::format("\n[[load]]   # {}\nkind = \"line\"\nname = {}\non = {}\nforce_per_length = {}\n", p.place,
-                                 toml_text(unique("load", name + "_line")), toml_text(halves ? name + half : name),
-                                 list(Vec3(p.value * p.direction * si("N/m")))) +
-                     past;
+          scene_.add_unique(
+              {"load", "line"}, name + "_line", p.place,
+              {{"on", halves ? name + half : name}, {"force_per_length", p.value * p.direction * si("N/m")}, {"history", *past}});
     }
     if (others > 0) in_.skip("*DLOAD PX, PY, PZ on elements that are no beams of the scene", p.place, others);
   }
@@ -299,31 +287,27 @@ void InpScene::pressures() {
     }
   }
   for (auto& g : groups) {
-    std::string past;
-    if (!history(g.amplitude, "*DLOAD", g.place, past)) continue;
+    const auto past = history(g.amplitude, "*DLOAD", g.place);
+    if (!past) continue;
     if (g.name.empty()) g.name = names_.facets(g.wish.empty() ? fmt::format("pressure_{}", ++made_["pressure"]) : g.wish, g.facets);
     if (g.name.empty()) continue;
     if (g.below) in_.below.insert(g.name);
     if (d_.plan.sweep.points > 0) {  // what shakes follows no face: with a stiffness of its own it would change the modes
       if (const std::optional<Vec3> n = normal_of(in_.mesh, g.facets)) {
-        tables_ +=
-            fmt::format("\n[[load]]   # {}\nkind = \"traction\"\nname = {}\non = {}\ntraction = {}\n", g.place,
-                        toml_text(unique("load", g.name)), toml_text(g.name), list(Vec3((g.below ? g.value : -g.value) * si("Pa") * *n))) +
-            past;
+        scene_.add_unique({"load", "traction"}, g.name, g.place,
+                          {{"on", g.name}, {"traction", (g.below ? g.value : -g.value) * si("Pa") * *n}, {"history", *past}});
         continue;
       }
       in_.notes.push_back(fmt::format("{}: a pressure on faces that are not plane follows them, which changes the modes", g.place));
     }
-    tables_ += fmt::format("\n[[load]]   # {}\nkind = \"pressure\"\nname = {}\non = {}\npressure = {}\n", g.place,
-                           toml_text(unique("load", g.name)), toml_text(g.name), num(g.value * si("Pa"))) +
-               past;
+    scene_.add_unique({"load", "pressure"}, g.name, g.place, {{"on", g.name}, {"pressure", g.value * si("Pa")}, {"history", *past}});
   }
 }
 
 void InpScene::velocities() {
   for (const auto& g : nodal_groups(d_, d_.velocities, "*INITIAL CONDITIONS, TYPE=VELOCITY", false, turned_, in_)) {
-    const std::string set = set_of(g.target, g.nodes, "velocity", false);
-    tables_ += fmt::format("\n[[initial]]   # {}\non = [{}]\nvelocity = {}\n", g.place, toml_text(set), list(Vec3(g.value * si("m/s"))));
+    scene_.add("initial", "", g.place,
+               {{"on", std::vector{set_of(g.target, g.nodes, "velocity", false)}}, {"velocity", g.value * si("m/s")}});
   }
 }
 }  // namespace hilo

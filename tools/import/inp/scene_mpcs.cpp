@@ -20,13 +20,6 @@ constexpr size_t most_nodes = 2000;  // a joint for each
 constexpr double most_off = 1e-4;    // nodes off their line or plane as drawn, in lengths of it: digits of the deck
 constexpr double no_width = 1e-6;    // below it nodes are on a line, or at one place
 
-std::string joint_line(const char* kind, const std::string& name, const std::string& a, const std::string& b, const std::string& at,
-                       const std::string& axis, const std::string& place) {
-  std::string line = fmt::format("\n[[joint]]   # {}\nkind = \"{}\"\nname = {}\na = {}\nb = {}\nat = {}\n", place, kind, toml_text(name),
-                                 toml_text(a), toml_text(b), at);
-  return axis.empty() ? line : line + fmt::format("axis = {}\n", axis);
-}
-
 double off_line(const Vec3& x, const Vec3& from, const Vec3& along) { return along.cross(x - from).norm(); }
 
 }  // namespace
@@ -69,15 +62,15 @@ void InpScene::keep_distances(const InpMpc& mpc) {
   for (size_t i = 0; i < pairs; ++i)
     for (const auto& one : of) ids.push_back(one[std::min(i, one.size() - 1)]);
   auto ends = ends_of(mpc, ids);
+  const double least = 1e-9 * size_of(d_, in_.mesh);
   for (size_t i = 0; i < ends.size(); i += 2)
-    if (!((ends[i].X - ends[i + 1].X).norm() > 1e-9 * length()))
+    if (!((ends[i].X - ends[i + 1].X).norm() > least))
       return in_.skip(fmt::format("*MPC, {} of two nodes at one place", mpc.kind), mpc.place);
   for (MpcEnd& e : ends)
     if (e.name.empty()) e.name = end_of(e.row, "mpc");
   for (size_t i = 0; i < ends.size(); i += 2)
-    tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"distance\"\nname = {}\na = {}\nb = {}\nat_a = {}\nat_b = {}\n", mpc.place,
-                           toml_text(unique("joint", "mpc_distance")), toml_text(ends[i].name), toml_text(ends[i + 1].name),
-                           point(ends[i].X), point(ends[i + 1].X));
+    scene_.add_unique({"joint", "distance"}, "mpc_distance", mpc.place,
+                      {{"a", ends[i].name}, {"b", ends[i + 1].name}, {"at_a", point(ends[i].X)}, {"at_b", point(ends[i + 1].X)}});
 }
 
 /// Off a line through the first of the ends, the farthest node of solid cells at them; -1 where they are of none.
@@ -121,7 +114,7 @@ void InpScene::stay_together(const InpMpc& mpc) {
   };
   std::iter_swap(ends.begin() + 1, farthest([&](const Vec3& x) { return (x - origin).norm(); }));
   const double size = (ends[1].X - origin).norm();
-  if (!(size > no_width * length())) return skip("of nodes at one place");
+  if (!(size > no_width * size_of(d_, in_.mesh))) return skip("of nodes at one place");
   const Vec3 along = (ends[1].X - origin) / size;
   const auto beside_line = [&](const Vec3& x) { return off_line(x, origin, along); };
   const Vec3 widest = farthest(beside_line)->X;
@@ -140,18 +133,16 @@ void InpScene::stay_together(const InpMpc& mpc) {
     normal = along.cross(x - origin).normalized();
     ends.push_back({"", x, beside});  // turns the body about the line, which pulls on nothing
   }
-  const Mesh& m = in_.mesh;
-  std::string body;
-  do body = unique("body", plane ? "mpc_plane" : "mpc_line");
-  while (m.find_region(body) >= 0 || m.node_sets.contains(body) || m.facet_sets.contains(body) || m.cell_sets.contains(body));
-  tables_ += sliding_body(body, "", "", point(origin), mpc.place);
+  for (const std::string& name : in_.mesh.all_names()) scene_.take("body", name);
+  const std::string body = scene_.unique("body", plane ? "mpc_plane" : "mpc_line");
+  massless_body(scene_, body, point(origin), mpc.place);
   for (size_t i = 0; i < ends.size(); ++i) {
     MpcEnd& e = ends[i];
     if (e.name.empty()) e.name = end_of(e.row, "mpc");
     const bool in_plane = plane || e.row == beside;  // of a line the last one alone
     const char* kind = i == 0 ? "spherical" : i == 1 || !in_plane ? "in-line" : "in-plane";
-    const std::string axis = i == 0 ? "" : list(i == 1 || !in_plane ? along : normal);
-    tables_ += joint_line(kind, unique("joint", body), body, e.name, point(e.X), axis, mpc.place);
+    scene_.add_unique({"joint", kind}, body, mpc.place, {{"a", body}, {"b", e.name}, {"at", point(e.X)}})
+        .set_if(i > 0, "axis", i == 1 || !in_plane ? along : normal);
   }
 }
 

@@ -24,9 +24,8 @@ void InpScene::tied() {
     if (!a || !b) continue;
     if (!t.adjust)
       in_.notes.push_back(fmt::format("{}: *TIE, ADJUST=NO: nodes off the other surface are moved onto it all the same", t.place));
-    tables_ += fmt::format("\n[[tie]]   # {}\nname = {}\na = {}\nb = {}\n", t.place, toml_text(unique("tie", clean_name(t.name))),
-                           toml_text(*a), toml_text(*b));
-    if (t.tolerance > 0) tables_ += fmt::format("gap = {}\n", num(t.tolerance * si("m") * o_.scale));
+    scene_.add_unique("tie", clean_name(t.name), t.place, {{"a", *a}, {"b", *b}})
+        .set_if(t.tolerance > 0, "gap", t.tolerance * si("m") * o_.scale);
   }
 }
 
@@ -46,9 +45,8 @@ void InpScene::contacts() {
       in_.notes.push_back(
           fmt::format("{}: the stiffness of the contact is hilo's own, by E and the depth of cells, not that of *SURFACE BEHAVIOR, {}",
                       c.place, with.law));
-    tables_ += fmt::format("\n[[{}]]   # {}\nname = {}\na = {}\nb = {}\n", tied ? "tie" : "contact", c.place,
-                           toml_text(unique(tied ? "tie" : "contact", clean_name(c.name))), toml_text(a), toml_text(b));
-    if (!tied && with.friction > 0) tables_ += fmt::format("friction = {}\n", num(with.friction));
+    scene_.add_unique(tied ? "tie" : "contact", clean_name(c.name), c.place, {{"a", a}, {"b", b}})
+        .set_if(!tied && with.friction > 0, "friction", with.friction);
   };
   for (InpPair c : d_.contacts) {
     if (c.interaction.empty()) c.interaction = d_.every_interaction;

@@ -14,23 +14,20 @@ namespace hilo {
 
 void InpScene::supports() {
   std::vector<HeldAskew> askew;
-  for (const auto& h : held_groups(d_, turned_, in_, askew)) write(h);
+  for (const auto& h : held_groups(d_, turned_, in_, askew)) hold(h);
   for (const HeldAskew& h : askew) {
     const std::string set = set_of("", {h.node}, "support", true);
-    tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\nb = {}\nat = {}\naxis = {}\n", h.place,
-                           toml_text(unique("joint", set)), toml_text(set), point(in_.mesh.X[h.node]), list(h.axis));
+    joint_to_slide(scene_, set, "", set, h.axis, point(in_.mesh.X[h.node]), h.place);
   }
 }
 
-void InpScene::write(const Held& h) {
-  std::string past, parts;
-  if (!history(h.amplitude, "*BOUNDARY", h.place, past)) return;
-  for (int k = 0; k < 3; ++k)
-    if (h.on[k]) parts += fmt::format("{}\"{}\"", parts.empty() ? "" : ", ", "xyz"[k]);
-  const std::string set = set_of(h.target, h.nodes, "support", false);
-  tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"{}\"\nname = {}\non = {}\ncomponents = [{}]\n", h.place,
-                         h.moved ? "translation" : "fixed", toml_text(unique("motion", set)), toml_text(set), parts);
-  if (h.moved) tables_ += fmt::format("displacement = {}\n", list(Vec3(h.value * si("m")))) + past;
+void InpScene::hold(const Held& h) {
+  const auto past = history(h.amplitude, "*BOUNDARY", h.place);
+  if (!past) return;
+  unsigned bits = 0;
+  for (int k = 0; k < 3; ++k) bits |= static_cast<unsigned>(h.on[k]) << k;
+  hold_set(scene_, set_of(h.target, h.nodes, "support", false), bits, h.moved ? SceneValue(h.value * si("m")) : SceneValue(), *past,
+           h.place);
 }
 
 /// What a joint of a node of cells names: its body, or the set of it.
@@ -56,31 +53,19 @@ void InpScene::slides() {
     });
   for (size_t i = 0; i < d_.slides.size(); ++i) {
     const InpSlide& s = d_.slides[i];
-    const std::string name = unique("body", slide_name(d_, static_cast<int>(i)));
-    const std::string at = point(s.X), axis = list(Vec3(Vec3::Unit(s.component - 1)));
+    const std::string name = scene_.unique("body", slide_name(d_, static_cast<int>(i)));
+    const Vec3 at = point(s.X), axis = Vec3::Unit(s.component - 1);
     Held& h = held[static_cast<int>(i)];
-    std::string past;
-    const bool is_held = h.is && history(h.amplitude, "*BOUNDARY", h.place, past);
-    tables_ += sliding_body(name, is_held ? "" : unique("joint", name), axis, at, s.place);
-    if (is_held) {
-      Prescribed by;
-      by.way[s.component - 1] = h.by * si("m");
-      tables_ += motion_of_body(unique("motion", name), name, by, at, past, h.place);
-    }
+    if (const auto past = h.is ? history(h.amplitude, "*BOUNDARY", h.place) : std::nullopt) {
+      massless_body(scene_, name, at, s.place);
+      motion_of_body(scene_, scene_.unique("motion", name), name, {h.by * si("m") * axis}, at, *past, h.place);
+    } else
+      sliding_body(scene_, name, axis, at, s.place);
     for (const auto a : s.rows) {
       const std::string set = end_of(a, "equal");
-      tables_ += joint_to_slide(unique("joint", set), name, set, axis, point(in_.mesh.X[a]), s.place);
+      joint_to_slide(scene_, set, name, set, axis, point(in_.mesh.X[a]), s.place);
     }
   }
-}
-
-/// Of the model, for points beside others.
-double InpScene::length() const {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : in_.mesh.X) box.extend(x);
-  for (const auto& [id, b] : d_.bodies) box.extend(b.X);
-  const double size = box.isEmpty() ? 0 : box.diagonal().norm();
-  return size > 0 ? size : 1;
 }
 
 void InpScene::sums() {
@@ -95,12 +80,12 @@ void InpScene::sums() {
       const Vec3 X = d_.bodies.at(b.id).X, e = Vec3::Unit((b.component - 1) % 3);
       if (b.component > 3) {  // a small turn is what a point beside goes, over its distance
         const Vec3 beside = Vec3::Unit(b.component % 3), way = e.cross(beside);
-        const double L = length();
-        const std::string of = unique("body", body_name(d_, b.id) + "_turn");  // the ends of a sum are different bodies
-        tables_ += fmt::format("\n[[body]]   # {}\nname = {}\nmass = 0\ncom = {}\n", s.place, toml_text(of), point(X + L * beside));
-        tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"fixed\"\nname = {}\na = {}\nb = {}\nat = {}\n", s.place,
-                               toml_text(unique("joint", of)), toml_text(body_name(d_, b.id)), toml_text(of), point(X + L * beside));
-        terms.push_back({of, point(X + L * beside), b.factor / L * way});
+        const double L = size_of(d_, in_.mesh);
+        const Vec3 at = point(X + L * beside);
+        const std::string of = scene_.unique("body", body_name(d_, b.id) + "_turn");  // the ends of a sum are different bodies
+        massless_body(scene_, of, at, s.place);
+        scene_.add_unique({"joint", "fixed"}, of, s.place, {{"a", body_name(d_, b.id)}, {"b", of}, {"at", at}});
+        terms.push_back({of, at, b.factor / L * way});
         terms.push_back({body_name(d_, b.id), point(X), -b.factor / L * way});
         turns = true;
       } else {
@@ -114,8 +99,7 @@ void InpScene::sums() {
       const InpSlide& of = d_.slides[static_cast<size_t>(slide)];
       if (factor != 0) terms.push_back({slide_name(d_, slide), point(of.X), factor * Vec3::Unit(of.component - 1)});
     }
-    tables_ += joints_of_sum(terms, "equation", s.place,
-                             [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
+    joints_of_sum(scene_, terms, "equation", s.place);
   }
 }
 
@@ -180,16 +164,9 @@ void InpScene::supports_of_ties() {
   for (auto& [id, h] : held) {
     const Mat3 axes = axes_of(id);
     h.by.way = axes * h.by.way, h.by.turn = axes * h.by.turn;
-    const std::string name = body_name(d_, id), at = list(Vec3(d_.bodies.at(id).X * si("m") * o_.scale));
-    std::string past, to = "ground";
-    if (h.by.any() && !history(h.amplitude, "*BOUNDARY", h.place, past)) continue;
-    if (h.bits == 63) {
-      tables_ += motion_of_body(unique("motion", name), name, h.by, at, past, h.place);
-      continue;
-    }
-    if (h.by.any()) tables_ += moving_body(to = unique("body", name + "_moved"), h.by, at, past, h.place);
-    tables_ += joints_that_hold(h.bits, axes, name + "_support", to, name, at, h.place,
-                                [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
+    if (const auto past = history(h.by.any() ? h.amplitude : "", "*BOUNDARY", h.place))
+      hold_body(scene_, body_name(d_, id), h.bits, axes, h.by, point(d_.bodies.at(id).X), *past, h.place);
   }
 }
+
 }  // namespace hilo

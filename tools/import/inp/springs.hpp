@@ -24,7 +24,7 @@ struct InpPointSpring {
 
 /// Why no line of a scene says it; "" where one does.
 std::string why_no_spring(const InpPointSpring& spring);
-/// Scene lines.
-std::string write_point_spring(const InpDeck& deck, const Imported& in, const InpPointSpring& spring, const ImportOptions& options);
+/// `size` of the model, in units of the deck.
+void write_point_spring(const InpDeck& deck, double size, const InpPointSpring& spring, const ImportOptions& options, SceneWriter& scene);
 
 }  // namespace hilo

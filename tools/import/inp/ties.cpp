@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/param.hpp"
 #include "import/inp/equations.hpp"
 #include "import/inp/groups.hpp"
 #include "import/inp/springs.hpp"
@@ -48,8 +48,7 @@ std::vector<std::int64_t> ids_of(const InpDeck& d, const InpTie& t) {
     for (const InpSurface& s : d.surfaces)
       if (s.of_nodes && upper(s.name) == t.of)
         for (const auto& l : s.lines) l.target.empty() ? ids.push_back(l.id) : add(l.target);
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  sort_unique(ids);
   return ids;
 }
 
@@ -144,8 +143,7 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
     std::vector<std::int64_t> beams;  // nodes of beams, and others that are bodies, among them
     std::vector<std::int64_t> ids = ids_of(d, t);
     for (const auto& [a, weight] : w) ids.push_back(in.mesh.node_id[static_cast<size_t>(a)]);
-    std::ranges::sort(ids);
-    ids.erase(std::ranges::unique(ids).begin(), ids.end());
+    sort_unique(ids);
     for (const auto id : ids)
       if (d.bodies.contains(id) && id != ref) {
         beams.push_back(id);
@@ -201,8 +199,7 @@ void tied_lines(const InpDeck& d, const InpNodal& l, const std::function<void(st
     const auto set = d.nset.find(l.target);
     if (set == d.nset.end()) return;
     ids = set->second.members;
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    sort_unique(ids);
   }
   for (const auto id : ids) {
     if (const auto turns = d.turns_of.find(id); turns != d.turns_of.end())
@@ -226,12 +223,15 @@ std::string body_name(const InpDeck& d, std::int64_t id) {
   return name;
 }
 
-std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOptions& o) {
-  const auto si = [&](const char* unit) { return to_si(unit, o.units); };
-  const auto point = [&](const Vec3& x) {
-    const double s = si("m") * o.scale;
-    return toml_list({x.x() * s, x.y() * s, x.z() * s});
-  };
+double size_of(const InpDeck& d, const Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : mesh.X) box.extend(x);
+  for (const auto& [id, b] : d.bodies) box.extend(b.X);
+  const double size = box.isEmpty() ? 0 : box.diagonal().norm();
+  return size > 0 ? size : 1;
+}
+
+void write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOptions& o, SceneWriter& scene) {
   const auto X = [&](std::int64_t id) {
     const auto a = d.node.find(id);
     return a != d.node.end() ? in.mesh.X[a->second] : d.loose.at(id);
@@ -247,9 +247,9 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
   for (const InpTransform& t : d.transformed)
     for (const auto id : numbers_of(d, {t.target, t.id, t.place})) own_axes.insert(id);
   std::map<std::int64_t, double> mass;
-  std::string springs;
+  SceneWriter springs;
+  const double size = size_of(d, in.mesh);
   std::set<std::int64_t> valued;
-  std::map<std::string, int> used;
   for (const InpPointValue& v : d.point_values) {
     auto set = d.elset.find(v.elset);
     if (set == d.elset.end()) set = d.elset.find(unqualified(v.elset));
@@ -289,54 +289,45 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
         continue;
       }
       for (size_t k = 0; k < spring.ends.size(); ++k) spring.ends[k].name = end_name(p->second.nodes[k]);
-      springs += write_point_spring(d, in, spring, o);
+      write_point_spring(d, size, spring, o, springs);
     }
   }
   for (const auto& [id, p] : d.points)
     if (!valued.contains(id) && !(p.type == "DCOUP3D" && d.means.contains(p.nodes[0])))
       in.skip("*ELEMENT, TYPE=" + p.type + " without a value", p.place);
 
-  std::string text;
   for (const auto& [id, b] : d.bodies) {
-    text += fmt::format("\n[[body]]   # {}\nname = \"{}\"\nmass = {}\ncom = {}\n", b.place, body_name(d, id),
-                        toml_number(mass[id] * si("kg")), point(b.X));
+    scene.add("body", body_name(d, id), b.place, {{"mass", mass[id] * o.si("kg")}, {"com", o.point(b.X)}});
     mass.erase(id);
   }
   for (const auto& [id, m] : mass)
-    if (m > 0)
-      text += fmt::format("\n[[point_mass]]\nname = {0}\non = {0}\nmass = {1}\n", toml_text(end_name(id)), toml_number(m * si("kg")));
+    if (m > 0) scene.add("point_mass", end_name(id), "", {{"on", end_name(id)}, {"mass", m * o.si("kg")}});
   for (const auto& [id, b] : d.bodies)
     for (const auto& [other, components] : b.bodies)
-      text +=
-          joints_that_hold(components, Mat3::Identity(), fmt::format("{}_{}", body_name(d, id), other), body_name(d, id),
-                           body_name(d, other), point(X(other)), b.place, [](const std::string&, const std::string& wish) { return wish; });
+      joints_that_hold(scene, components, Mat3::Identity(), fmt::format("{}_{}", body_name(d, id), other), body_name(d, id),
+                       body_name(d, other), o.point(X(other)), b.place);
   for (const auto& [id, b] : d.bodies)
     for (const InpCarried& c : b.carries) {
       std::vector<Vec3> points;
       for (const auto a : c.rows) points.push_back(in.mesh.X[a]);
-      const auto name = [&, id = id] {
-        const int n = ++used[body_name(d, id)];
-        return n == 1 ? body_name(d, id) : fmt::format("{}_{}", body_name(d, id), n);
-      };
+      const std::string body = body_name(d, id);
       if (c.components != 7) {  // planes of the body, in which the nodes stay
         for (const auto a : c.rows)
           for (int k = 0; k < 3; ++k)
             if (c.components >> k & 1)
-              text += joint_to_slide(name(), body_name(d, id), end_name(in.mesh.node_id[a]),
-                                     toml_list({1. * (k == 0), 1. * (k == 1), 1. * (k == 2)}), point(in.mesh.X[a]), c.place);
+              joint_to_slide(scene, body, body, end_name(in.mesh.node_id[a]), Vec3::Unit(k), o.point(in.mesh.X[a]), c.place);
         continue;
       }
       if (on_a_line(points)) {
         for (const auto a : c.rows)
-          text += fmt::format("\n[[joint]]   # {}\nkind = \"spherical\"\nname = \"{}\"\na = \"{}\"\nb = {}\nat = {}\n", c.place, name(),
-                              body_name(d, id), toml_text(end_name(in.mesh.node_id[a])), point(in.mesh.X[a]));
+          scene.add_unique({"joint", "spherical"}, body, c.place,
+                           {{"a", body}, {"b", end_name(in.mesh.node_id[a])}, {"at", o.point(in.mesh.X[a])}});
         continue;
       }
-      const std::string as = name();
-      text += fmt::format("\n[[joint]]   # {}\nkind = \"fixed\"\nname = \"{}\"\na = \"{}\"\nb = {}\nat = {}\n", c.place, as,
-                          body_name(d, id), toml_text(names.nodes(as + "_tied", c.rows)), point(b.X));
+      const std::string as = scene.unique("joint", body);
+      scene.add({"joint", "fixed"}, as, c.place, {{"a", body}, {"b", names.nodes(as + "_tied", c.rows)}, {"at", o.point(b.X)}});
     }
-  return text + springs;
+  scene.append(springs);
 }
 
 }  // namespace hilo
