@@ -191,6 +191,8 @@ class Builder {
   void hold_blocks(const std::vector<int>& body_of);
   // build_joints.cpp
   void add_joints();
+  /// Of a rigid beam, by its mean axes, with a body.
+  void add_bond(int axes, int body, const Vec3& at);
   void add_joint_coordinates();  // joint_coordinates.cpp
   // build_contacts.cpp
   void add_contacts();
