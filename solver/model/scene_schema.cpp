@@ -152,13 +152,14 @@ std::vector<KindSchema> make_schema() {
                  any_number,
                  {3, 6}},
                 {"axes", numbers, "1", "", "nine numbers: rows are the body axes in which `inertia` is given", any_number, {9}}}});
-  s.push_back({"point_mass",
-               "",
-               "mass added to a body, to the nodes of a set (shared equally), or to a region (shared as its own mass is)",
-               {name,
-                {"on", text, "", "!", "region, set or body"},
-                {"mass", number, "kg", "!", "total mass added", above(0)},
-                {"at", vector3, "m", "", "where on a body or rigid region; its centre, or shared by the nodes, when absent"}}});
+  s.push_back(
+      {"point_mass",
+       "",
+       "mass added to a body, to the nodes of a set (shared equally), or to a region (shared as its own mass is)",
+       {name,
+        {"on", text, "", "!", "region, set or body"},
+        {"mass", number, "kg", "!", "total mass added", above(0)},
+        {"at", vector3, "m", "", "where on a body or rigid region; its centre, the axis of a beam, or shared by the nodes, when absent"}}});
 
   const auto with = [](std::vector<Param> keys, const std::vector<Param>& more) {
     keys.insert(keys.end(), more.begin(), more.end());
@@ -202,7 +203,8 @@ std::vector<KindSchema> make_schema() {
                 name,
                 on,
                 {"force", vector3, "N", "!", "total force, inertial axes"},
-                {"at", vector3, "m", "", "point of a body or rigid region it acts at; its centre of mass when absent"},
+                {"at", vector3, "m", "",
+                 "point of a body or rigid region it acts at; when absent its centre of mass, of a section of a beam the axis"},
                 {"per_node", boolean, "", "false", "the force is that of each node, as in a deck's *CLOAD"},
                 keys::history}});
   s.push_back({"load",
@@ -282,21 +284,23 @@ std::vector<KindSchema> make_schema() {
                 {"velocity", vector3, "m/s", "[0, 0, 0]", "velocity of the reference point"},
                 {"spin", vector3, "rad/s", "[0, 0, 0]", "angular velocity"},
                 {"about", vector3, "m", "", "reference point of the spin; the centre of mass of what is named when absent"}}});
-  s.push_back({"sensor",
-               "",
-               "accelerometer triad on a set, region or body",
-               {name,
-                on,
-                {"at", vector3, "m", "", "point on a body; mean of the nodes, of a region its centre of mass, when absent"},
-                {"x", vector3, "1", "[1, 0, 0]", "forward axis at the start (ISO 8855)"},
-                {"z", vector3, "1", "[0, 0, 1]", "upward axis at the start (ISO 8855)"}}});
+  s.push_back(
+      {"sensor",
+       "",
+       "accelerometer triad on a set, region or body",
+       {name,
+        on,
+        {"at", vector3, "m", "", "point on a body; mean of the nodes, of a region its centre of mass, of a beam its axis, when absent"},
+        {"x", vector3, "1", "[1, 0, 0]", "forward axis at the start (ISO 8855)"},
+        {"z", vector3, "1", "[0, 0, 1]", "upward axis at the start (ISO 8855)"}}});
   s.push_back({"probe",
                "",
                "position, velocity and acceleration of a point",
                {name,
                 on,
                 {"at", vector3, "m", "",
-                 "point on a body, or nearest node of the set; mean of the nodes, of a region its centre of mass, when absent"}}});
+                 "point on a body, or nearest node of the set; mean of the nodes, of a region its centre of mass, of a beam its axis, when "
+                 "absent"}}});
   for (KindSchema& quantity : quantity_schema()) s.push_back(std::move(quantity));
   s.push_back(
       {"history",

@@ -149,6 +149,7 @@ void Builder::add_sections() {
         throw Error(e.place.text(), fmt::format("{}: a body or region is called \"{}\", as one of its sections", e.label(), name));
       if (plan.body[k] < 0) {
         plan.body[k] = new_body(name, line.at[k]);
+        section_at_[plan.body[k]] = line.at[k];
         out_->bodies.back().size = line.cells[std::min(k, last - 1)].length;
       }
       body_by_name_[name] = plan.body[k];

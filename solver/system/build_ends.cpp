@@ -127,6 +127,11 @@ Builder::Found Builder::find(const std::string& name, const std::string& where, 
   return found;
 }
 
+Vec3 Builder::point_of(int body) const {
+  const auto section = section_at_.find(body);
+  return section != section_at_.end() ? section->second : out_->bodies[body].Xc;
+}
+
 void Builder::set_follower(int node, int body, const std::string& where) {
   if (out_->follower[node] == body) return;
   if (out_->follower[node] >= 0)

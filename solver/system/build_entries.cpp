@@ -54,7 +54,7 @@ void Builder::add_point_masses() {
       Body& body = out_->bodies[found.body];
       std::vector<std::pair<Vec3, double>> points;
       for (const auto& [node, share] : shares) points.emplace_back(out_->X[node], m * share);
-      if (!has_nodes && comm_.rank == 0) points.emplace_back(e.has("at") ? e.vector3("at") : body.Xc, m);
+      if (!has_nodes && comm_.rank == 0) points.emplace_back(e.has("at") ? e.vector3("at") : point_of(found.body), m);
       add_mass(body, points);
       out_->start.c[found.body] = body.Xc;
     } else {
@@ -78,7 +78,7 @@ void Builder::add_stations() {
       if (found.body >= 0) {
         s.body = found.body;
         const Body& body = out_->bodies[s.body];
-        const Vec3 at = e.has("at") ? e.vector3("at") : found.n_global == 0 ? body.Xc : centre_of(shares_of(found));
+        const Vec3 at = e.has("at") ? e.vector3("at") : found.n_global == 0 ? point_of(s.body) : centre_of(shares_of(found));
         s.arm = at - body.Xc;
       } else if (e.has("at")) {
         if (s.sensor)

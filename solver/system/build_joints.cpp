@@ -135,4 +135,11 @@ void Builder::add_joints() {
   }
 }
 
+void Builder::add_bond(int axes, int body, const Vec3& at) {
+  Joint bond = make_joint({.kind = "fixed", .a = {axes, -1}, .b = {body, -1}, .at = at, .at_b = at}, out_->start);
+  bond.name = fmt::format("{} and {}", out_->bodies[axes].name, out_->bodies[body].name);
+  auto& joints = out_->part<Joints>();
+  joints.list.push_back(std::move(bond)), ++joints.n_bonds;
+}
+
 }  // namespace hilo

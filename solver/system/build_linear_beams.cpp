@@ -3,6 +3,7 @@
 //
 // A section is four nodes that move as one, so that masses at them are those of the beam exactly.  What beams ride on is a place: its
 // sections move as one too.  Where something acts on its body it is an interface, welded to that body; elsewhere the region carries it.
+// What a rigid one carries is joined to it as by a fixed joint, whose rows are chosen among those of all joints.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -166,6 +167,10 @@ RegionParcel Builder::parcel_of_beams(BeamRegion& region) {
     place.carried = place.only_here && !acted_on_.contains(place.body) && !body.held && body.mass == 0 && !body.ground;
     if (place.carried) {
       body.held = true;
+      continue;
+    }
+    if (region.rigid) {
+      add_bond(out_->modes[region.modes].body, place.body, beams.sections[place.sections.front()].at);
       continue;
     }
     Weld w;

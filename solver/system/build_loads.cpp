@@ -56,10 +56,8 @@ struct Builder::LoadReading {
       load.kind = Load::Kind::body_force;
       load.body = found.body;
       const Vec3& centre = out.bodies[found.body].Xc;
-      if (e.has("at"))
-        load.arm = e.vector3("at") - centre;
-      else if (found.is_region)
-        load.arm = b.centre_of(b.shares_of(found)) - centre;
+      const Vec3 at = e.has("at") ? e.vector3("at") : found.is_region ? b.centre_of(b.shares_of(found)) : b.point_of(found.body);
+      load.arm = at - centre;
       return;
     }
     if (e.has("at"))
@@ -108,8 +106,12 @@ struct Builder::LoadReading {
   void acceleration() {
     const Vec3 a = e.vector3("acceleration");
     if (!is_of_body()) return of_mass([a](const Vec3&) { return a; });
+    if (b.section_at_.contains(found.body))
+      throw Error(where, fmt::format("{}: the mass of \"{}\" is that of its beam", e.label(), on), "kind = \"line\" on the beam");
+    const double mass = out.bodies[found.body].mass;
+    if (mass == 0) throw Error(where, fmt::format("{}: \"{}\" has no mass, so this would do nothing", e.label(), on));
     load.kind = Load::Kind::body_force, load.body = found.body;
-    load.value = out.bodies[found.body].mass * a;
+    load.value = mass * a;
   }
   void centrifugal() {
     if (is_of_body()) throw Error(where, e.label() + ": a body has no cells", "give it the force that it has");

@@ -133,6 +133,8 @@ class Builder {
   int patch_of(const std::string& name, const Found& found, const std::string& where);
   int body_of(const std::string& name, const Found& found, const std::string& where);
   int new_body(const std::string& name, const Vec3& Xc);
+  /// Of a body where no point of it is named: of a section that of the axis, else the centre of mass.
+  Vec3 point_of(int body) const;
   void set_follower(int node, int body, const std::string& where);
   void follow_all(const std::vector<int>& nodes, int body, const std::string& where);
   std::vector<int> linear_bodies_at(const std::vector<int>& nodes) const;
@@ -189,6 +191,8 @@ class Builder {
   void hold_blocks(const std::vector<int>& body_of);
   // build_joints.cpp
   void add_joints();
+  /// Of a rigid beam, by its mean axes, with a body.
+  void add_bond(int axes, int body, const Vec3& at);
   void add_joint_coordinates();  // joint_coordinates.cpp
   // build_contacts.cpp
   void add_contacts();
@@ -253,6 +257,7 @@ class Builder {
   std::map<std::string, int> body_by_name_;  // [[body]] entries
   std::map<std::string, int> patch_by_name_;
   std::vector<BeamPlan> beam_plans_;
+  std::map<int, Vec3> section_at_;  // of bodies that are sections of beams, the point of the axis
   std::vector<BeamRegion> beam_regions_;
   std::map<int, std::array<Vec3, 2>> section_starts_;      // velocity and spin of sections of linear beams
   mutable std::set<int> acted_on_;                         // bodies that an entry joins, loads or moves, and does not only look at

@@ -24,7 +24,7 @@ Traits Joints::traits() const {
   return {.constrains = !list.empty(), .is_driven = std::any_of(begin(), end(), [](const Joint& j) { return j.drive.row >= 0; })};
 }
 
-std::string Joints::count() const { return fmt::format("{} joints", list.size()); }
+std::string Joints::count() const { return fmt::format("{} joints", n_told()); }
 
 void Joints::number(Layout& layout) {
   block_.clear(), clique_.clear(), owned_.clear();
@@ -40,7 +40,8 @@ void Joints::number(Layout& layout) {
 std::string Joints::owner(int block) const {
   if (block_.empty() || block < block_.front() || block >= block_.back() + n_blocks(list.back())) return "";
   const auto after = std::upper_bound(block_.begin(), block_.end(), block);
-  return fmt::format("joint \"{}\"", list[static_cast<size_t>(after - block_.begin()) - 1].name);
+  const auto j = static_cast<size_t>(after - block_.begin()) - 1;
+  return fmt::format("{} \"{}\"", j < n_told() ? "joint" : "the bond of", list[j].name);
 }
 
 void Joints::look_at_rows(const Config& q, double t, double factor, Violation& out) const {
@@ -133,7 +134,7 @@ void Joints::archive(Archive& a) {
 
 std::vector<Output> Joints::outputs() const {
   std::vector<Output> out;
-  for (const Joint& c : list) out.push_back({.group = "joint", .name = c.name, .n_mid = 6});
+  for (size_t j = 0; j < n_told(); ++j) out.push_back({.group = "joint", .name = list[j].name, .n_mid = 6});
   return out;
 }
 
@@ -157,7 +158,7 @@ void Joints::observe(const Sight& at) {
   const Config& q = *m.s.left;
   ConnectorGradient left;
   double force[max_measures];
-  for (size_t j = 0; j < list.size(); ++j) {
+  for (size_t j = 0; j < n_told(); ++j) {
     const Joint& c = list[j];
     const double* lambda = m.shared.data() + row(j);
     gradient(c, q, left);

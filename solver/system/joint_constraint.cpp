@@ -9,7 +9,7 @@ namespace {
 class JointConstraint final : public Constraint {
  public:
   JointConstraint(const Points& points, Joints& joints, size_t j) : points_(points), joints_(joints), j_(j) {}
-  std::string_view section() const override { return "joint"; }
+  std::string_view section() const override { return j_ < joints_.n_told() ? "joint" : "the bond of"; }
   const std::string& name() const override { return joint().name; }
   int n_rows() const override { return joint().n_rows(); }
   int n_position_rows() const override { return joint().n_position_rows(); }

@@ -12,6 +12,8 @@ class Joints final : public Contribution, public Equations, public Constraining,
  public:
   explicit Joints(const Points& points) : points_(points) {}
   std::vector<Joint> list;
+  size_t n_bonds = 0;  // last in the list: of rigid beams with bodies, whose rows may depend on those of joints; no history tells of them
+  size_t n_told() const { return list.size() - n_bonds; }
   /// Axes, carried by a body or inertial (-1), in which the reactions of a joint are told; by joint.  The others: its frame, carried by a.
   struct Axes {
     int body = -1;

@@ -283,6 +283,46 @@ TEST_F(LinearBeams, RigidOnesMeetLinearAndNonlinearOnes) {
   EXPECT_EQ(work.run("hilo-post beam rigid.h5 arm").exit, 2);
 }
 
+// Rows that depend on others are found through rigid beams as through bodies: a four-bar linkage in a plane, of three rigid beams or of the
+// bodies that they are; and what holds itself, with the reaction of a lever.
+TEST_F(LinearBeams, RigidOnesMayBeHeldMoreThanEnough) {
+  const Vec3 at[] = {{0, 0, 0}, {0.1, 0, 0.2}, {0.7, 0, 0.45}, {0.6, 0, 0}};
+  const char* names[] = {"crank", "coupler", "rocker"};
+  const auto linkage = [&](bool beams) {
+    std::string out = "gravity = [0, 0, -9.81]\n" + plain_section(1e7, 2e7, 5e4, 5e4, "line_mass = 3\ninertia = [1e-3, 1e-3]");
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 along = at[k + 1] - at[k], t = along.normalized();
+      const double L = along.norm();
+      const Mat3 J = L * L * L / 4 * (Mat3::Identity() - t * t.transpose()) + L * 1e-3 * (Mat3::Identity() + t * t.transpose());
+      if (beams)
+        out += fmt::format("[beam.{}]\npoints = [{}, {}]\ncells = [3]\nsection = \"s\"\n{}", names[k], list(at[k]), list(at[k + 1]), rigid);
+      else
+        out += fmt::format("[[body]]\nname = \"{}\"\nmass = {}\ncom = {}\ninertia = [{}, {}, {}, {}, {}, {}]\n", names[k], 3 * L,
+                           list((at[k] + at[k + 1]) / 2), J(0, 0), J(1, 1), J(2, 2), J(0, 1), J(0, 2), J(1, 2));
+    }
+    const auto end = [&](int k, const char* which) -> std::string {
+      return k < 0 || k > 2 ? "ground" : beams ? names[k] + std::string(".") + which : names[k];
+    };
+    for (int k = 0; k < 4; ++k)
+      out += axial("revolute", fmt::format("j{}", k), k < 3 ? end(k - 1, "end") : "ground", k < 3 ? end(k, "0") : end(2, "end"), at[k],
+                   {0, 1, 0});
+    return out + probe("p", end(1, "end"), fmt::format("at = {}", list(at[2]))) + in_time(0.3, 1e-3) + sharp;
+  };
+  const Results beam = solved_as("beam", linkage(true)), bar = solved_as("bar", linkage(false));
+  for (const std::string name : {"probe/p", "joint/j0", "joint/j2", "joint/j3", "energy"}) {
+    const Eigen::MatrixXd a = beam.history(name), b = bar.history(name);
+    EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-3 * b.cwiseAbs().maxCoeff()) << name;
+  }
+  const Results lever = solved(
+      plain_section(1e7, 2e7, 5e4, 5e4, "line_mass = 3\ninertia = [1e-3, 1e-3]") +
+      beam_of("[[0, 0, 0], [3, 0, 0]]", 3, "a = \"hub\"\n" + rigid) + body("hub", 2, {0, 0, 0}, {1, 1, 1}) +
+      axial("revolute", "pin", "ground", "hub", {0, 0, 0}, {0, 1, 0}) + axial("in-plane", "rest", "ground", "arm.1", {1, 0, 0}, {0, 0, 1}) +
+      axial("in-plane", "guide", "ground", "arm.2", {2, 0, 0}, {0, 1, 0}) + push("arm.end", Vec3(0, 0, -6)) + in_steps(1));
+  const Eigen::VectorXd rest = lever.history("joint/rest").bottomRows(1).transpose();
+  EXPECT_NEAR(rest[2], 18, 1e-6);
+  EXPECT_NEAR(lever.history("joint/guide").bottomRows(1).norm(), 0, 1e-6);
+}
+
 TEST_F(LinearBeams, WhatTheyCannotBeIsRefusedByName) {
   const auto refused = [&](const std::string& scene, const std::string& why) {
     work.write("scene.toml", scene + in_steps(1));

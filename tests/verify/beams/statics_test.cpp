@@ -356,5 +356,31 @@ TEST_F(BeamStatics, ALoadThatTurnsWithTheSectionsRollsTheBeam) {
   }
 }
 
+// A section is meant on the axis of its beam, whatever hangs on it: no twist by a force, F s^3/3EI at it.
+TEST_F(BeamStatics, AForceOnASectionActsOnTheAxis) {
+  const Results r =
+      solved(plain_section(1e8, 1e8, 1e3, 1e3, "line_mass = 1\ninertia = [1e-5, 1e-5]") + beam_of("[[0, 0, 0], [1, 0, 0]]", 2) +
+             "[[point_mass]]\nname = \"lug\"\non = \"arm.1\"\nmass = 1e-3\nat = [0.5, 0.3, 0]\n" + push("arm.1", Vec3(0, 0, 0.1)) +
+             tip_probe("arm.1") + in_steps(1));
+  EXPECT_NEAR(r.history("beam/arm")(r.history("beam/arm").rows() - 1, 5), 0, 1e-7);
+  const Vec3 at = r.history("probe/tip").bottomRows(1).leftCols<3>().transpose();
+  EXPECT_NEAR(at[1], 0, 1e-7);
+  EXPECT_NEAR(at[2], 0.1 * 0.125 / 3e3, 1e-8);
+}
+
+// The mass of a section is in its beam: an acceleration on it, or on a body without mass, did nothing without a word.
+TEST_F(BeamStatics, AnAccelerationOfWhatHasNoMassIsRefused) {
+  for (const std::string fidelity : {"nonlinear", "linear", "rigid"})
+    for (const std::string on : {"arm.2", "knot"}) {
+      work.write("scene.toml", plain_section(1e8, 1e8, 1e3, 1e3, "line_mass = 1\ninertia = [1e-5, 1e-5]") +
+                                   beam_of("[[0, 0, 0], [1, 0, 0]]", 4, "a = \"ground\"\nb = \"knot\"\nfidelity = \"" + fidelity + "\"") +
+                                   body("knot", 0, {1, 0, 0}, {0, 0, 0}) + load("acceleration", "a", on, "acceleration = [0, 0, -1]\n") +
+                                   in_steps(1));
+      ran = work.run("hilo-solve scene.toml -o run.h5");
+      EXPECT_EQ(ran.exit, 2) << on;
+      EXPECT_NE(ran.err.find(on == "knot" ? "has no mass" : "that of its beam"), std::string::npos) << ran.err;
+    }
+}
+
 }  // namespace
 }  // namespace hilo::test::beams_statics_test
