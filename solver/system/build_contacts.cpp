@@ -141,7 +141,9 @@ void Builder::add_contacts() {
     return r >= 0 && regions_[r].fidelity != Fidelity::nonlinear ? regions_[r].body : -1;
   };
   size_t taken = 0;  // of an "all"
-  const std::vector<ContactEntry> entries = contact_entries(scene_, mesh_, comm_);
+  std::vector<ContactNote> told;
+  const std::vector<ContactEntry> entries = contact_entries(scene_, mesh_, comm_, &told);
+  for (const auto& [where, what] : told) warn(where, what);
   for (const auto& [e, of_all, balls, never] : entries) {
     const auto a = obstacles.find(e.text("a"));
     refuse_what_is_not_there(scene_, e);
