@@ -10,8 +10,8 @@
 namespace hilo {
 namespace {
 
-constexpr int resolved = 5;       // steps of an impact, below which it is told
-constexpr double too_deep = 0.5;  // share of a cell or layer, above which it is
+constexpr int resolved = 5;        // steps of an impact, below which it is told
+constexpr double too_deep = 0.25;  // share of a cell or layer, above which it is
 
 }  // namespace
 

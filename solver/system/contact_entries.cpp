@@ -209,8 +209,10 @@ std::vector<ContactEntry> contact_entries(const Scene& scene, const LocalMesh* m
     if (is_all(e)) continue;
     names.insert(e.name);
     if (const auto other = taken.take(e.text("a"), e.text("b"), e.label()))
-      throw Error(e.place.text(), fmt::format("{}: {} has facets of both sides too, which would meet twice", e.label(), other->label),
-                  "leave one of the two out, or name sets without common facets");
+      throw Error(
+          e.place.text(),
+          fmt::format("{}: {} has {}both sides too, which would meet twice", e.label(), other->label, other->by_name ? "" : "facets of "),
+          "leave one of the two out, or name sets without common facets");
   }
   for (const Entry& e : scene.entries("tie")) {
     names.insert(e.name);

@@ -111,8 +111,8 @@ TEST(ContactOfAll, TwoThatMeetTheSameAreRefused) {
        {contact("y", "A", "B"), contact("y", "B", "A"), contact("y", "Azmax", "B"), contact("y", "Bzmin", "Asurface")}) {
     const Ran ran = c.solve(contact("x", "A", "B") + second, "run.h5");
     EXPECT_EQ(ran.exit, 2);
-    EXPECT_NE(ran.err.find("contact \"y\": contact \"x\" has facets of both sides too, which would meet twice"), std::string::npos)
-        << ran.err;
+    EXPECT_NE(ran.err.find("contact \"y\": contact \"x\" has "), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("both sides too, which would meet twice"), std::string::npos) << ran.err;
   }
   c.solved(contact("x", "Azmax", "B") + contact("y", "Axmin", "B") + contact("z", "ground", "A"), "run.h5");
 }
