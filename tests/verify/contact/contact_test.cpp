@@ -296,6 +296,28 @@ TEST(Contact, NothingThatTouchesGoesThrough) {
       }
 }
 
+// Truth: a ball between four points of facets of 0.25 m, at (0.053, 0.053) about a corner, meets none of them; one of 0.15 m meets some
+// anywhere.
+TEST(Contact, WhatMayPassBetweenPointsIsTold) {
+  BlockOptions o;
+  o.n[0] = o.n[1] = 4, o.low = Vec3(-0.5, -0.5, -0.1), o.high = Vec3(0.5, 0.5, 0);
+  Case c("contact");
+  c.use(block_mesh(o), {Fidelity::nonlinear});
+  const auto said = [&](const std::string& obstacle) {
+    std::ofstream(c / "scene.toml")
+        << "[material.m]\nE = 1e8\nnu = 0.3\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n[[obstacle]]\nname = "
+           "\"o\"\nat = [0, 0, 3]\n"
+        << obstacle << "\n[[contact]]\nname = \"c\"\na = \"o\"\nb = \"block\"\n[time]\nstep = 0.01\nend = 5\n";
+    return c.run("hilo-solve --dry-run scene.toml tags.h5").err.find("may pass between them unseen") != std::string::npos;
+  };
+  EXPECT_TRUE(said("kind = \"sphere\"\nradius = 0.03"));
+  EXPECT_TRUE(said("kind = \"capsule\"\nradius = 0.05\nlength = 2"));
+  EXPECT_TRUE(said("kind = \"box\"\nsize = [0.1, 0.1, 2]"));
+  EXPECT_FALSE(said("kind = \"sphere\"\nradius = 0.15"));
+  EXPECT_FALSE(said("kind = \"box\"\nsize = [1, 2, 0.1]"));
+  EXPECT_FALSE(said("kind = \"plane\""));
+}
+
 TEST(Contact, GoesOnBitByBit) {
   const Folder folder;
   const Case c("contact");
