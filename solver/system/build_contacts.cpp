@@ -25,6 +25,14 @@ double relative_curvature(const Distance& shape, double radius) {
   return std::nan("");
 }
 
+/// Half of what is narrow enough to pass between points of a surface: across a bar, of the middle edge of a box; 0: nothing of it is [m].
+double half_width(const Distance& shape) {
+  if (shape.inside || shape.kind == Distance::Kind::plane || shape.kind == Distance::Kind::height_field) return 0;
+  if (shape.kind == Distance::Kind::torus) return shape.tube;
+  if (shape.kind != Distance::Kind::box) return shape.radius;
+  return shape.half.sum() - shape.half.minCoeff() - shape.half.maxCoeff();
+}
+
 /// From the least to the largest of what was seen.
 struct Extremes {
   double low = 1e300, high = -1e300;
@@ -141,7 +149,9 @@ void Builder::add_contacts() {
     return r >= 0 && regions_[r].fidelity != Fidelity::nonlinear ? regions_[r].body : -1;
   };
   size_t taken = 0;  // of an "all"
-  const std::vector<ContactEntry> entries = contact_entries(scene_, mesh_, comm_);
+  std::vector<ContactNote> told;
+  const std::vector<ContactEntry> entries = contact_entries(scene_, mesh_, comm_, &told);
+  for (const auto& [where, what] : told) warn(where, what);
   for (const auto& [e, of_all, balls, never] : entries) {
     const auto a = obstacles.find(e.text("a"));
     refuse_what_is_not_there(scene_, e);
@@ -352,6 +362,13 @@ void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
   for (const auto& [cell, facet, n] : all) first[{cell, facet}] = pair.n_points, pair.n_points += n;
   for (const auto& [cell, facet, n] : counts)
     for (std::int64_t k = 0; k < n; ++k) pair.number.push_back(first.at({cell, facet}) + k);
+  double apart = 0;
+  for (const ContactPoint& point : pair.points) apart = std::max(apart, std::sqrt(point.area));
+  apart = comm_.max(apart);
+  if (const double half = half_width(pair.shape); half > 0 && half < 0.8 * apart)  // a square of 2 x 2 points has 0.82 to its middle
+    warn(e.where("a"), fmt::format("{}: \"{}\" is {:.3g} m across, and points of \"{}\" are up to {:.3g} m apart: it may pass between them "
+                                   "unseen (smaller facets there, or a set of them as b)",
+                                   e.label(), e.text("a"), 2 * half, e.text("b"), apart));
   pair.told = fmt::format("{} Pa/m: {}{} Pa over {} m, the depth of {}", stiffness.text(),
                           times.high == 1 ? "" : fmt::format("{:g} times ", times.high), E.text(), depth.text(),
                           pair.body >= 0 ? "the layer" : "the cells");

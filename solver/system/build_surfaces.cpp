@@ -82,6 +82,7 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
   std::set<int> bodies[2];                    // -1: nodes of their own
   std::vector<int> nodes[2];
   bool rigid[2] = {false, false}, held = true;
+  std::string bends[2];  // a region that does
   const int n_sides = pair.itself ? 1 : 2;
   for (int s = 0; s < n_sides; ++s) {
     const std::string_view key = s == 0 ? "a" : "b";
@@ -92,7 +93,7 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
         rigid[s] = true;
       } else {
         if (!modulus.contains(f.region)) modulus[f.region] = young_of(linear_moduli(material_of(region)));
-        its.compliance = f.depth / modulus[f.region];
+        its.compliance = f.depth / modulus[f.region], bends[s] = region.name;
       }
       mean[s] += f.area * its.compliance, area[s] += f.area;
       ContactSurface::Face& face = pair.side[s].faces.emplace_back();
@@ -133,7 +134,8 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
     e.refuse("", "both surfaces have rigid regions: nothing says how stiff they are",
              "give modulus and layer, or tag one linear or nonlinear");
   for (const char* key : {"layer", "modulus"})
-    if (!both_rigid && e.has(key)) e.refuse(key, "a surface that can bend has its stiffness from its material");
+    if (!both_rigid && e.has(key))
+      e.refuse(key, fmt::format("region \"{}\" is not rigid: its stiffness comes from its material", bends[rigid[0] ? 1 : 0]));
   const double factor = e.given("factor")               ? e.number("factor")
                         : pair.is_static && !both_rigid ? static_factor
                                                         : 1,

@@ -10,7 +10,8 @@
 namespace hilo {
 namespace {
 
-constexpr int resolved = 5;  // steps of an impact, below which it is told
+constexpr int resolved = 5;        // steps of an impact, below which it is told
+constexpr double too_deep = 0.25;  // share of a cell or layer, above which it is
 
 }  // namespace
 
@@ -52,18 +53,28 @@ Contacts::Did Contacts::advance(ContactPair& pair, const Stage& s) {
           Approach{s.h, point.approach}.after(pair.shape.at(at.x0) - point.law.radius, pair.shape.at(at.x1) - point.law.radius);
     out.dissipated += at.force.dissipated;
     out.pressing += at.force.pressing, out.slid += at.force.pressing * at.force.slid;
-    if (at.force.acts) continue;
     if (const std::string why = gone_through(pair, point, at.x0, at.x1); !why.empty()) out.why = why;
   }
   return out;
 }
 
-/// Of a point that is open at both ends of a step.
+/// On the straight way of the step: deep within the obstacle, of a point that is open at both ends; of one that touches, deeper than at
+/// either end and out towards another side.  Distances are searched in strides by which they cannot fall to the level.
 std::string Contacts::gone_through(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Vec3& x1) const {
-  const double within = pair.shape.least_extent();
-  for (const double part : {0.25, 0.5, 0.75})
-    if (within > 0 && pair.shape.at((1 - part) * x0 + part * x1) < point.law.radius - 0.1 * (within + point.law.radius))
-      return fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
+  const double within = pair.shape.least_extent(), way = (x1 - x0).norm();
+  if (!(within > 0)) return "";
+  double phi[2];
+  Triple<double> n[2];
+  for (const int k : {0, 1}) pair.shape(triple<double>(k == 0 ? x0 : x1), phi[k], n[k]);
+  const double least = std::min({phi[0], phi[1], point.law.radius});
+  const bool open = least >= point.law.radius;
+  if (!open && dot(n[0], n[1]) >= 0.5) return "";
+  const double deep = (open ? 0.1 : 2e-3) * (within + point.law.radius), level = least - deep;
+  for (double at = 0; at < way;) {
+    const double above = pair.shape.at(x0 + at / way * (x1 - x0)) - level;
+    if (above < 0) return fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
+    at += std::max(above, deep / 4);
+  }
   return "";
 }
 
@@ -72,9 +83,7 @@ Contacts::Did Contacts::look_at_way(const ContactPair& pair, const Stage& s) con
   Did out;
   for (const ContactPoint& point : pair.points) {
     const Vec3 &x0 = point.last, x1 = measures(pair, position(pair, point, *s.end), *s.end);
-    const double radius = point.law.radius;
     if (const Place at = place(pair, point, s); at.force.acts) out.pressing += at.force.pressing;
-    if (pair.shape.at(x0) < radius || pair.shape.at(x1) < radius) continue;
     if (const std::string why = gone_through(pair, point, x0, x1); !why.empty()) out.why = why;
   }
   return out;
@@ -226,6 +235,13 @@ void Contacts::observe(const Sight& at) {
     if (at.step) mid.push_back(force);
   }
   points_.comm->max(end), points_.comm->sum(mid);
+  size_t first = 0;
+  const auto keep = [&](ContactSums& next) {
+    if (at.step) next.share = std::max(next.share, end[first + 1]);
+    first += 4;
+  };
+  for (ContactPair& pair : list) keep(pair.next);
+  for (SurfacePair& pair : surfaces) keep(pair.next);
   at.end.insert(at.end.end(), end.begin(), end.end()), at.mid.insert(at.mid.end(), mid.begin(), mid.end());
 }
 
@@ -286,12 +302,18 @@ void Contacts::each_facet(const Config& q, const std::function<void(const Presse
 
 void Contacts::add_to_report(Json& run) const {
   Json contacts = Json::object(Json::In::lines);
-  const auto tell = [&](const std::string& name, size_t points, const std::string& told, const ContactSums& sums, bool loses) {
-    if (sums.impacts > 0 && sums.shortest < resolved)
+  const auto tell = [&](const std::string& name, size_t points, const std::string& told, const ContactSums& sums, bool loses, bool facets) {
+    if (!is_static_ && sums.impacts > 0 && sums.shortest < resolved)
       warn(fmt::format("contact \"{}\"", name), fmt::format("the shortest of {} impacts lasted {} steps: {}", sums.impacts, sums.shortest,
                                                             plain   ? "neither its force nor its energy is resolved"
                                                             : loses ? "its force and its restitution are not resolved"
                                                                     : "it gave its energy back, but its force is not resolved"));
+    if (sums.share > too_deep && facets)
+      warn(fmt::format("contact \"{}\"", name),
+           fmt::format(
+               "a depth of {:.2g} of a cell or layer: beyond {:g} the pressure is none of a contact, and thin parts may go through each "
+               "other (`factor` makes it stiffer)",
+               sums.share, too_deep));
     contacts.add(name, {{"points", points},
                         {"stiffness", told},
                         {"slip", {sums.slip, 6}},
@@ -304,9 +326,10 @@ void Contacts::add_to_report(Json& run) const {
       warn(fmt::format("contact \"{}\"", pair.name),
            fmt::format("{} of {} points have gone past the border of the height field, where nothing holds them", pair.sums.outside,
                        pair.n_points));
-  for (const ContactPair& pair : list) tell(pair.name, static_cast<size_t>(pair.n_points), pair.told, pair.sums, pair.loses);
-  for (const SurfacePair& pair : surfaces) tell(pair.name, pair.n_points(), pair.told, pair.sums, pair.loses);
-  for (const BallHeap& heap : heaps) tell(heap.name, heap.balls.size(), heap.told, heap.sums, heap.loses);
+  for (const ContactPair& pair : list)
+    tell(pair.name, static_cast<size_t>(pair.n_points), pair.told, pair.sums, pair.loses, pair.has_facets);
+  for (const SurfacePair& pair : surfaces) tell(pair.name, pair.n_points(), pair.told, pair.sums, pair.loses, true);
+  for (const BallHeap& heap : heaps) tell(heap.name, heap.balls.size(), heap.told, heap.sums, heap.loses, false);
   if (!contacts.members().empty()) run.add("contacts", std::move(contacts));
 }
 

@@ -16,12 +16,17 @@ struct ContactEntry {
   std::vector<std::string> balls{};  // not one pair, but all of these obstacles that come near each other (system/ball_heap)
   std::vector<std::pair<std::string, std::string>> never{};  // of these, pairs that another entry names
 };
+/// What is to be said of an entry, and where it stands.
+struct ContactNote {
+  std::string where, what;
+};
 /// An "all" that stands for more pairs of balls than this has them as one.
 constexpr size_t most_pairs_of_balls = 1000;
 /// In the order of the scene.  "all" is every obstacle and every region with cells of three dimensions, unless something has that name.
-/// Left out: what hangs together by nodes, is on the same body, or another [[contact]] or [[tie]] names.  Error where nothing is left.
-/// Collective.
-std::vector<ContactEntry> contact_entries(const Scene& scene, const LocalMesh* mesh, const Comm& comm);
+/// Left out: what hangs together by nodes, is on the same body, or another [[contact]] or [[tie]] names, also by sets of its
+/// facets.  Error where nothing is left, or where two have facets of both sides in common; `told`: what is to be said.  Collective.
+std::vector<ContactEntry> contact_entries(const Scene& scene, const LocalMesh* mesh, const Comm& comm,
+                                          std::vector<ContactNote>* told = nullptr);
 /// Whether a [[contact]] says "all".
 bool meets_all(const Scene& scene);
 /// Which pairs the "all" of the scene stand for, a line for each: "contact.NAME stands for NAME_A_B: A, B".  Collective.

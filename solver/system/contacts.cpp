@@ -239,12 +239,21 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
   p.K->add(point.clique, dense.data());
 }
 
-std::vector<int> nodes_that_meet(const System& system) {
-  std::vector<int> out;
-  for (const SurfacePair& pair : system.part<Contacts>().surfaces)
+Meeting what_may_meet(const System& system) {
+  Meeting out;
+  const Contacts& contacts = system.part<Contacts>();
+  for (const ContactPair& pair : contacts.list) {
+    for (const int b : {pair.body, pair.carrier})
+      if (b >= 0) out.bodies.push_back(b);
+    for (const ContactPoint& point : pair.points)
+      if (!point.nodes.empty()) out.nodes.push_back(point.nodes[0]);
+  }
+  for (const BallHeap& heap : contacts.heaps)
+    for (const BallHeap::Ball& ball : heap.balls) out.bodies.push_back(ball.body);
+  for (const SurfacePair& pair : contacts.surfaces)
     for (const ContactSurface& surface : pair.side) {
       if (pair.itself) break;  // nothing else comes to it
-      for (const ContactSurface::Face& face : surface.faces) out.push_back(face.node[0]);
+      for (const ContactSurface::Face& face : surface.faces) out.nodes.push_back(face.node[0]);
     }
   return out;
 }

@@ -109,7 +109,10 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
 };
 
 class System;
-/// A node of each facet of surfaces that may meet others.
-std::vector<int> nodes_that_meet(const System& system);
+/// What may meet something else: bodies, and a node of each facet.
+struct Meeting {
+  std::vector<int> bodies, nodes;
+};
+Meeting what_may_meet(const System& system);
 
 }  // namespace hilo

@@ -18,6 +18,7 @@ namespace hilo {
 /// Sums of a contact over the run.
 struct ContactSums {
   double slip = 0, dissipated = 0;  // [m, J]
+  double share = 0;                 // largest depth, as a share of the cell
   int steps = 0;                    // that the contact lasts by now
   int impacts = 0, shortest = 0;    // that have ended; steps of the shortest, 0: none has
   int outside = 0;                  // most points that were past the border of a height field at once

@@ -98,7 +98,9 @@ void reach_from_outside(const System& system, Pieces& pieces) {
       for (const int i : facet) pieces.reach(pieces.of_node(i));
     if (load.body >= 0) pieces.reach(pieces.of_body(load.body));
   }
-  for (const int i : nodes_that_meet(system)) pieces.reach(pieces.of_node(i));
+  const Meeting meeting = what_may_meet(system);
+  for (const int i : meeting.nodes) pieces.reach(pieces.of_node(i));
+  for (const int b : meeting.bodies) pieces.reach(pieces.of_body(b));
 }
 
 void join_by_cells(const System& system, Pieces& pieces) {

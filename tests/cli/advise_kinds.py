@@ -106,4 +106,11 @@ with tempfile.TemporaryDirectory() as folder:
     plates.block("a", (0, 0, 0), (0.4, 0.05, 0.004), (4, 1, 1)).block("b", (0.4, 0, 0), (0.4, 0.05, 0.004), (4, 1, 1)).write()
     levels, advice = advise(scene(hinge("knee", "a1", "b0", 0.4) + '[region.a]\nshell = true\nstiffening = true\n[region.b]\nshell = true\n', 0.05, 2.5e-4))
     assert levels["a"][0] == "nonlinear" and levels["b"][0] == "linear", levels
+
+    # two surfaces that meet by a stiffness of the scene are rigid, both
+    pair = Deck()
+    pair.block("a", (0, 0, 0), bar, (4, 1, 1)).block("b", (0.6, 0, 0), bar, (4, 2, 2)).block("d", (0.6, 0, -0.055), bar, (4, 1, 1)).write()
+    block = '[[contact]]\nname = "stop"\na = "d"\nb = "b"\nmodulus = 1e7\nlayer = 0.05\n[[motion]]\nkind = "fixed"\nname = "base"\non = "d0"\n'
+    levels, advice = advise(scene(hinge("knee", "a1", "b0", 0.6) + block, 0.02, 5e-4))
+    assert levels["b"][:2] == levels["d"][:2] == ("rigid", "rigid") and levels["a"][0] == "linear", levels
 print("advise_kinds: well")

@@ -312,7 +312,7 @@ TEST_F(ImportBdfScene, RegionsOfFacesThatMayMeetAreAContact) {
   for (int i = 0; i < 8; ++i) cube += fmt::format("GRID,{},,{}.,{}.,{}.\n", 201 + i, 4 + i / 4, (i / 2) % 2, i % 2);
   cube += "CHEXA,11,1,201,205,207,203,202,206\n,208,204\nBSURFS,8,,,,11,201,202,204\nBSURFS,7,,,,4,17,18,19\n";
   run("SOL 101\nCEND\nSPC = 9\nLOAD = 2\nBCSET = 3\nBEGIN BULK\nSPCADD,9,1,4\n" + bar() + cube +
-          "BCTADD,3,5\nBCTSET,5,8,7,0.3\nBCTSET,6,8,7\n" + foot +
+          "BCTADD,3,5\nBCTSET,5,8,7,0.3\nBCTSET,5,7,8,0.3\nBCTSET,6,8,7\n" + foot +
           "SPC1,4,23,201,THRU,208\nFORCE,2,205,,2.5,-1.,0.,0.\nFORCE,2,206,,2.5,-1.,0.,0.\nFORCE,2,207,,2.5,-1.,0.,0.\nFORCE,2,208,,2.5,-1."
           ",0.,0.\n"
           "ENDDATA\n",

@@ -67,6 +67,9 @@ TEST_F(ImportInpContact, LawsOfOtherProgramsAreTold) {
   scene(pair + "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1e7\n");
   expect_said("hilo's own");
   EXPECT_NE(scene(pair + "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1e7\n").find("[[tie]]"), std::string::npos);
+  const std::string both = scene("*CONTACT PAIR, INTERACTION=dry\nunder, table\ntable, under\n*SURFACE INTERACTION, NAME=dry\n");
+  EXPECT_EQ(both.find("[[contact]]"), both.rfind("[[contact]]")) << "points of both meet the other anyhow";
+  expect_said("a contact has these two surfaces already");
   EXPECT_NE(scene("*CONTACT PAIR, INTERACTION=dry\nunder,\n*SURFACE INTERACTION, NAME=dry\n").find("a = \"under\"\nb = \"under\""),
             std::string::npos);
   for (const char* odd : {"*FRICTION, USER\n", "*FRICTION, EXPONENTIAL DECAY\n.3, .2, 1.\n", "*SURFACE BEHAVIOR, NO SEPARATION\n"}) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact pressure of nodes: of each facet that is pressed a plane through the pressures of its points, by
-// least squares; where facets meet, their mean.
+// Contact pressure of nodes: of each facet that is pressed a plane through the pressures of its points, by least squares, the sum of those
+// of all contacts that press it; where facets meet, their mean.
 #include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <map>
 
 #include "dynamics/record/fields.hpp"
 #include "system/touching.hpp"
@@ -18,25 +21,36 @@ class ContactFields final : public FieldSource {
     const Touching* contacts = touching(system_);
     if (!contacts || !contacts->has_facets()) return;
     const Slabs& rows = to.node_rows();
-    std::vector<std::vector<double>> send(system_.comm->size);  // row, area times pressure, area
+    std::vector<std::vector<double>> send(system_.comm->size);  // row, the facet by three other rows, area, pressure
     contacts->each_facet(at.q, [&](const Touching::Pressed& facet) {
       if (facet.pressure.maxCoeff() <= 0) return;  // around a corner, or beyond the border
       const Eigen::VectorXd pressure = of_nodes(facet);
-      const double area = facet.area.sum();
-      for (Eigen::Index a = 0; a < pressure.size(); ++a) {
-        const std::int64_t row = node_row_[facet.nodes[static_cast<size_t>(a)]];
-        if (row < 0) continue;
-        auto& list = send[rows.rank_of(row)];
-        list.insert(list.end(), {static_cast<double>(row), area * std::max(pressure[a], 0.), area});
+      std::vector<std::int64_t> its;
+      for (const int node : facet.nodes) its.push_back(node_row_[node]);
+      std::array<std::int64_t, 3> key{};
+      std::ranges::partial_sort_copy(its, key, std::greater());
+      for (size_t a = 0; a < its.size(); ++a) {
+        if (its[a] < 0) continue;
+        auto& list = send[rows.rank_of(its[a])];
+        for (const std::int64_t row : {its[a], key[0], key[1], key[2]}) list.push_back(static_cast<double>(row));
+        list.insert(list.end(), {facet.area.sum(), pressure[static_cast<Eigen::Index>(a)]});
       }
     });
+    struct Sum {
+      double area = 0, pressure = 0;
+    };
+    std::map<std::array<double, 4>, Sum> of_facet;  // at a node
+    for (const auto& list : system_.comm->exchange(send))
+      for (size_t k = 0; k < list.size(); k += 6) {
+        Sum& sum = of_facet[{list[k], list[k + 1], list[k + 2], list[k + 3]}];
+        sum.area = list[k + 4], sum.pressure += list[k + 5];
+      }
     const auto n = static_cast<size_t>(rows.count());
     std::vector<double> pressure(n, 0.0), area(n, 0.0);
-    for (const auto& list : system_.comm->exchange(send))
-      for (size_t k = 0; k < list.size(); k += 3) {
-        const auto i = static_cast<size_t>(static_cast<std::int64_t>(list[k]) - rows.first());
-        pressure[i] += list[k + 1], area[i] += list[k + 2];
-      }
+    for (const auto& [key, sum] : of_facet) {
+      const auto i = static_cast<size_t>(static_cast<std::int64_t>(key[0]) - rows.first());
+      pressure[i] += sum.area * std::max(sum.pressure, 0.), area[i] += sum.area;
+    }
     for (size_t i = 0; i < n; ++i)
       if (area[i] > 0) pressure[i] /= area[i];
     to.piece("contact_pressure", pressure);

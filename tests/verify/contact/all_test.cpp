@@ -85,6 +85,38 @@ TEST(ContactOfAll, OfOnePartAndBesideOthers) {
   EXPECT_EQ(pairs(c.solved(contact("c", "all", "Azmax"), "run.h5")), (std::vector<std::string>{"c_B_Azmax", "c_ground_Azmax"}));
 }
 
+// Truth: what another entry names by a set of facets is met once: friction 0.1 there, and a tie bears all of its force alone.
+TEST(ContactOfAll, LeavesOutWhatSetsName) {
+  const Blocks c;
+  const std::string all = contact("c", "all", "all");
+  const std::vector<std::string> rest{"c_ground_A", "c_ground_B"};
+  const Ran ran = c.solve(contact("own", "B", "Azmax", "friction = 0.1") + all, "run.h5");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_EQ(pairs(Results(c / "run.h5")), (std::vector<std::string>{"c_ground_A", "c_ground_B", "own"}));
+  const Ran told = c.run("hilo-solve scene.toml tags.h5 --dry-run");
+  EXPECT_NE(told.err.find("\"all\" leaves out \"A\" with \"B\", as contact \"own\" names facets of both"), std::string::npos) << told.err;
+  const std::string tie = "[[tie]]\nname = \"t\"\na = \"Azmax\"\nb = \"Bzmin\"\ngap = 0.02\n";
+  EXPECT_EQ(pairs(c.solved(tie + all, "run.h5")), rest);
+  const Ran shared = c.solve(all + tie, "run.h5", ranks + "timeout 60 mpirun -n 2 ", "--set time.end=0.01");
+  EXPECT_EQ(shared.exit, 0) << shared.err;
+  EXPECT_EQ(pairs(Results(c / "run.h5")), rest);
+  EXPECT_EQ(pairs(c.solved(contact("c", "ground", "all") + contact("d", "ground", "Bxmin", "friction = 0.5"), "run.h5")),
+            (std::vector<std::string>{"c_ground_A", "d"}));
+}
+
+// Truth: two entries with facets of both sides in common would press and rub twice.
+TEST(ContactOfAll, TwoThatMeetTheSameAreRefused) {
+  const Blocks c;
+  for (const std::string& second :
+       {contact("y", "A", "B"), contact("y", "B", "A"), contact("y", "Azmax", "B"), contact("y", "Bzmin", "Asurface")}) {
+    const Ran ran = c.solve(contact("x", "A", "B") + second, "run.h5");
+    EXPECT_EQ(ran.exit, 2);
+    EXPECT_NE(ran.err.find("contact \"y\": contact \"x\" has "), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("both sides too, which would meet twice"), std::string::npos) << ran.err;
+  }
+  c.solved(contact("x", "Azmax", "B") + contact("y", "Axmin", "B") + contact("z", "ground", "A"), "run.h5");
+}
+
 // Truth: keys for rigid surfaces go to pairs of these alone; linear regions need not be named otherwise.
 TEST(ContactOfAll, OfRigidAndLinearRegions) {
   const Blocks rigid(false, Fidelity::rigid), linear(false, Fidelity::linear);
@@ -114,7 +146,9 @@ TEST(ContactOfAll, OfBodies) {
         k, k < 2 ? "kind = \"sphere\"\nradius = 0.2" : "kind = \"box\"\nsize = [0.2, 0.2, 0.2]");
   std::ofstream(c / "scene.toml") << scene << contact("c", "all", "all", "stiffness = 1e5\nmodulus = 1e7")
                                   << "[time]\nend = 0.3\nstep = 0.01\n";
-  succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
+  const Ran ran = c.run("hilo-solve scene.toml -o run.h5");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_EQ(ran.err.find("touches it"), std::string::npos) << "what may meet something is not forgotten: " << ran.err;
   EXPECT_EQ(pairs(Results(c / "run.h5")),
             (std::vector<std::string>{"c_ground_s0", "c_ground_s1", "c_ground_s2", "c_s0_s1", "c_s2_s0", "c_s2_s1"}));
   const std::string told = text_of(c / "run.json");

@@ -267,6 +267,57 @@ TEST(Contact, TwoHundredThrowsKeepEnergyAndMomenta) {
   EXPECT_GT(rubbed, 60);
 }
 
+// Truth: a ball whose energy the obstacle can store, at a depth of v sqrt(m/k) below what would part them, stays on its side.  Steps of 0.1
+// to 1.5 of the contact begin or end within the obstacle at any depth: one that touches there at one end must not have gone on through it.
+TEST(Contact, NothingThatTouchesGoesThrough) {
+  struct Shot {
+    const char* obstacle;
+    double k, v;
+  };
+  const Workplace place;
+  for (const auto& [obstacle, k, v] : {Shot{"cylinder\"\nradius = 0.1\naxis = [0, 1, 0]", 1.9e4, 6.8},
+                                       {"box\"\nsize = [2, 4, 0.1]", 2e4, 13},
+                                       {"capsule\"\nradius = 0.1\nlength = 1\naxis = [1, 0, 0]", 1.4e5, 13.5},
+                                       {"torus\"\nradius = 0.5\ntube = 0.1\nat = [0.5, 0, 0]", 1.6e4, 13},
+                                       {"sphere\"\nradius = 0.1", 3.7e4, 13.4}})
+    for (const char* method : {"energy-momentum", "generalized-alpha"})
+      for (int phase = 0; phase < 6; ++phase) {
+        const double h = std::numbers::pi / std::sqrt(k) * std::array{0.7, 1., 1.5, 3., 4., 10.}[phase], z = 0.5 + v * h * phase / 6;
+        const std::string at = fmt::format("[0, 0.02, {}]", z);
+        std::ofstream(place / "scene.toml") << fmt::format(
+            "[[body]]\nname = \"b\"\nmass = 1\ncom = {0}\ninertia = [0.004, 0.004, 0.004]\n[[obstacle]]\nname = \"s\"\non = \"b\"\nkind = "
+            "\"sphere\"\nradius = 0.1\nat = {0}\n[[obstacle]]\nname = \"o\"\nkind = \"{1}\n[[contact]]\nname = \"c\"\na = \"o\"\nb = "
+            "\"s\"\nstiffness = {2}\n[[initial]]\non = [\"b\"]\nvelocity = [0, 0, {3}]\n[time]\nend = {4}\nstep = {5}\nintegrator = "
+            "\"{6}\"\n",
+            at, obstacle, k, -v, 2 / v, h, method);
+        succeeded(place.run("hilo-solve --quiet scene.toml -o run.h5"), obstacle);
+        const auto b = Results(place / "run.h5").history("body/b");
+        EXPECT_GT(b(b.rows() - 1, 2), 0) << obstacle << " " << method << " " << phase;
+      }
+}
+
+// Truth: a ball between four points of facets of 0.25 m, at (0.053, 0.053) about a corner, meets none of them; one of 0.15 m meets some
+// anywhere.
+TEST(Contact, WhatMayPassBetweenPointsIsTold) {
+  BlockOptions o;
+  o.n[0] = o.n[1] = 4, o.low = Vec3(-0.5, -0.5, -0.1), o.high = Vec3(0.5, 0.5, 0);
+  Case c("contact");
+  c.use(block_mesh(o), {Fidelity::nonlinear});
+  const auto said = [&](const std::string& obstacle) {
+    std::ofstream(c / "scene.toml")
+        << "[material.m]\nE = 1e8\nnu = 0.3\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n[[obstacle]]\nname = "
+           "\"o\"\nat = [0, 0, 3]\n"
+        << obstacle << "\n[[contact]]\nname = \"c\"\na = \"o\"\nb = \"block\"\n[time]\nstep = 0.01\nend = 5\n";
+    return c.run("hilo-solve --dry-run scene.toml tags.h5").err.find("may pass between them unseen") != std::string::npos;
+  };
+  EXPECT_TRUE(said("kind = \"sphere\"\nradius = 0.03"));
+  EXPECT_TRUE(said("kind = \"capsule\"\nradius = 0.05\nlength = 2"));
+  EXPECT_TRUE(said("kind = \"box\"\nsize = [0.1, 0.1, 2]"));
+  EXPECT_FALSE(said("kind = \"sphere\"\nradius = 0.15"));
+  EXPECT_FALSE(said("kind = \"box\"\nsize = [1, 2, 0.1]"));
+  EXPECT_FALSE(said("kind = \"plane\""));
+}
+
 TEST(Contact, GoesOnBitByBit) {
   const Folder folder;
   const Case c("contact");

@@ -76,6 +76,39 @@ TEST(LoadSteps, ABlockIsPressedOnAPlane) {
   }
 }
 
+// Truth: p at every node of the foot, of facets too that lie on two obstacles, each under a half; it lifts off without impacts.
+TEST(LoadSteps, ABlockIsPressedOnTwoObstacles) {
+  OnPlane c(
+      "steps = 2\nend = 1\n[[load]]\nkind = \"pressure\"\nname = \"p\"\non = \"zmax\"\npressure = 10\n"
+      "[[motion]]\nkind = \"fixed\"\nname = \"x\"\non = \"xmin\"\ncomponents = [\"x\"]\n"
+      "[[motion]]\nkind = \"fixed\"\nname = \"y\"\non = \"ymin\"\ncomponents = [\"y\"]\n"
+      "[[obstacle]]\nkind = \"box\"\nname = \"left\"\nat = [-0.75, 0.5, -1]\nsize = [2, 3, 2]\n"
+      "[[obstacle]]\nkind = \"box\"\nname = \"right\"\nat = [1.25, 0.5, -1]\nsize = [2, 3, 2]\n"
+      "[[contact]]\nname = \"d\"\na = \"right\"\nb = \"block\"\n",
+      Shape::hex8, Fidelity::nonlinear);
+  {
+    const Ran ran = c.Case::run("hilo-solve --quiet scene.toml tags.h5 --set 'contact.c.a=\"left\"' -o run.h5");
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Results r(c / "run.h5");
+    EXPECT_NEAR(last(r, "contact/c")[2], 2.5, 0.05);
+    EXPECT_NEAR(last(r, "contact/c")[2] + last(r, "contact/d")[2], 10, 1e-7);
+    const auto [least, most] = pressures(r, c.mesh, 0);
+    EXPECT_NEAR(least, 10, 0.02);
+    EXPECT_NEAR(most, 10, 0.02);
+  }
+}
+
+// Truth: what a load step presses and the next one lifts has no impact.
+TEST(LoadSteps, WhatIsLiftedHasNoImpact) {
+  const OnPlane c(
+      "steps = 4\nend = 1\n[[motion]]\nkind = \"translation\"\nname = \"t\"\non = \"zmax\"\ndisplacement = [0, 0, -1e-3]\n"
+      "history = {t = [0, 0.25, 0.5, 0.75, 1], value = [0, 1, -1, 1, -1]}\n",
+      Shape::hex8, Fidelity::nonlinear);
+  const Ran ran = c.Case::run("hilo-solve scene.toml tags.h5 -o run.h5");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_EQ(ran.err.find("impact"), std::string::npos) << ran.err;
+}
+
 // Truth: the sum of the tractions mu p, whatever the block's own deformation; the work of friction is that of the way its foot goes.  It
 // slides on an obstacle or on another region in the steps that were asked for: friction is no jump to another branch.
 TEST(LoadSteps, ABlockIsPressedAndPushed) {

@@ -275,6 +275,23 @@ TEST(Surfaces, NothingGoesThroughAPlate) {
   }
 }
 
+// Truth: 42 kg at 8.3 m/s have 1.4 kJ, and the layers of a plate as soft as this store 0.9 kJ over its thickness: the run says so.
+TEST(Surfaces, DeepOnesAreTold) {
+  BlockOptions A, B;
+  A.regions = {"A"}, B.regions = {"B"};
+  A.n[0] = A.n[1] = 4, A.low = Vec3(-1, -1, -0.1), A.high = Vec3(1, 1, 0), B.low = Vec3(-0.2, -0.15, 0.38), B.high = Vec3(0.2, 0.2, 0.68);
+  Case c("contact");
+  c.use(together(block_mesh(A), block_mesh(B)), {Fidelity::nonlinear, Fidelity::nonlinear});
+  const std::string run = "hilo-solve scene.toml tags.h5 -o run.h5";
+  std::ofstream(c / "scene.toml")
+      << "[material.m]\nE = 3.24e5\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n[[contact]]\nname = "
+         "\"c\"\na = \"A\"\nb = \"B\"\n[[initial]]\non = [\"B\"]\nvelocity = [0, 0, -8.3]\n[time]\nend = 0.2\nstep "
+         "= 0.02\n";
+  const Ran deep = c.run(run), shallow = c.run(run + " --set initial.1.velocity=[0,0,-1] --set time.end=0.6");
+  EXPECT_NE(deep.err.find("contact \"c\": a depth of 0."), std::string::npos) << deep.err;
+  EXPECT_EQ(shallow.err.find("a depth of"), std::string::npos) << shallow.err;
+}
+
 /// A plate of .7 x .3 x .1 m, its top at z = 0, and a block of .2 m half a millimetre above it.
 Mesh table() {
   BlockOptions A, B;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs of regions of faces (BSURFS): BGSET as [[tie]] of the scene, the source's nodes follow the target; BCTSET as [[contact]].
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "base/error.hpp"
 #include "import/bdf/scene.hpp"
@@ -42,6 +44,7 @@ void BdfScene::pairs() {
     const auto sum = sums.find(chosen);
     if (chosen >= 0 && sum == sums.end() && !all.contains(chosen))
       in_.skip(fmt::format("{} = {}, of which there is none", card == "BCTSET" ? "BCSET" : card, chosen), "case control");
+    std::set<std::pair<std::string, std::string>> seen;
     for (const auto& [id, list] : all)
       for (const BdfGlue& g : list) {
         if (taken.any && id != chosen && (sum == sums.end() || std::ranges::count(sum->second.sets, id) == 0)) {
@@ -51,6 +54,10 @@ void BdfScene::pairs() {
         const std::string a = pair_surface(g.target), b = pair_surface(g.source);
         if (a.empty() || b.empty()) {
           in_.skip(card + " of a region that is no BSURFS", g.place);
+          continue;
+        }
+        if (!seen.emplace(std::minmax(a, b)).second) {
+          in_.notes.push_back(fmt::format("{}: a [[{}]] has these two regions already", g.place, section));
           continue;
         }
         keys(g, scene_.add_unique(section, fmt::format("{}_{}", name, id), g.place, {{"a", a}, {"b", b}}));

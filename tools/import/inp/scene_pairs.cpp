@@ -2,6 +2,10 @@
 // The scene lines of an .inp deck's pairs of surfaces: [[tie]] and [[contact]].
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <set>
+#include <utility>
+
 #include "base/error.hpp"
 #include "import/inp/scene.hpp"
 
@@ -48,10 +52,15 @@ void InpScene::contacts() {
     scene_.add_unique(tied ? "tie" : "contact", clean_name(c.name), c.place, {{"a", a}, {"b", b}})
         .set_if(!tied && with.friction > 0, "friction", with.friction);
   };
+  std::set<std::pair<std::string, std::string>> seen;
   for (InpPair c : d_.contacts) {
     if (c.interaction.empty()) c.interaction = d_.every_interaction;
     const std::string *a = facets_of(c, c.master, "*CONTACT PAIR"), *b = a ? facets_of(c, c.slave, "*CONTACT PAIR") : nullptr;
-    if (a && b) table(c, *a, *b);
+    if (!a || !b) continue;
+    if (seen.emplace(std::minmax(*a, *b)).second)
+      table(c, *a, *b);
+    else
+      in_.notes.push_back(fmt::format("{}: a contact has these two surfaces already, and points of both meet the other", c.place));
   }
   if (!d_.every_pair.empty()) table({"contact", "", "", d_.every_pair, -1, true, d_.every_interaction}, "all", "all");
 }
