@@ -19,9 +19,9 @@ struct Response {
 
 /// What a rate force may ask of the step besides its measures.
 struct Interval {
-  double h;           // [s]
-  double factor = 1;  // of a motor's history
-  double load = 0;    // what presses the surfaces of a joint together [N]
+  double h;                 // [s]
+  double factor = 1;        // of a motor's history
+  double load = 0;          // what presses the surfaces of a joint together [N]
   bool is_instant = false;  // rates are those half-way between r0 and r1, and not means over a step
 };
 
