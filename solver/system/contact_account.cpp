@@ -73,7 +73,7 @@ std::string Contacts::gone_through(const ContactPair& pair, const ContactPoint& 
   for (double at = 0; at < way;) {
     const double above = pair.shape.at(x0 + at / way * (x1 - x0)) - level;
     if (above < 0) return fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
-    at += std::max(above, deep / 4);
+    at += std::max({above, deep / 4, way / 4000});
   }
   return "";
 }
