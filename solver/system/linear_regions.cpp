@@ -255,7 +255,8 @@ std::vector<Output> LinearRegions::outputs() const {
   std::vector<Output> out;
   for (const LinearRegion& r : regions) {
     const Modes& m = points_.modes[r.modes];
-    out.push_back({.group = "modes", .name = points_.bodies[m.body].name, .n_end = m.n_modes});
+    if (m.n_modes > 0)  // a rigid beam has none
+      out.push_back({.group = "modes", .name = points_.bodies[m.body].name, .n_end = m.n_modes});
     out.push_back({.group = "left_out", .name = points_.bodies[m.body].name, .n_mid = 2});
   }
   return out;

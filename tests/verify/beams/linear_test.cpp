@@ -313,6 +313,11 @@ TEST_F(LinearBeams, RigidOnesMayBeHeldMoreThanEnough) {
     const Eigen::MatrixXd a = beam.history(name), b = bar.history(name);
     EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-3 * b.cwiseAbs().maxCoeff()) << name;
   }
+  (void)solved_as("cut", linkage(true), "--checkpoint 10steps --set time.end=0.1");
+  succeeded(work.run("hilo-solve --restart cut.h5 --set time.end=0.3 --accept"));
+  const Eigen::MatrixXd whole = beam.history("probe/p"), cut = Results(work / "cut.h5").history("probe/p");
+  ASSERT_EQ(whole.rows(), cut.rows());
+  EXPECT_LT((whole - cut).cwiseAbs().maxCoeff(), 1e-8 * whole.cwiseAbs().maxCoeff()) << "gone on with";
   const Results lever = solved(
       plain_section(1e7, 2e7, 5e4, 5e4, "line_mass = 3\ninertia = [1e-3, 1e-3]") +
       beam_of("[[0, 0, 0], [3, 0, 0]]", 3, "a = \"hub\"\n" + rigid) + body("hub", 2, {0, 0, 0}, {1, 1, 1}) +
