@@ -18,7 +18,8 @@ TEST(ImportSceneWriter, WritesWhatASceneReads) {
   w.add("initial", "", "", {{"on", std::vector{odd}}});
   w.begin("one", Vec3(0, 0, -9.81));
   EXPECT_EQ(w.count("load"), 2);
-  EXPECT_EQ(w.items().back().ends(), std::vector{odd});
+  EXPECT_EQ(w.ends({"load", "initial"}), (std::set<std::string>{odd, "ground"}));
+  EXPECT_EQ(w.ends({"initial"}), std::set<std::string>{odd});
 
   const Scene s = Scene::parse(w.text(), "written");
   EXPECT_EQ(s.table("scene").text("title"), "one");

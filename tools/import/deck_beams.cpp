@@ -109,7 +109,7 @@ void write_section(SceneWriter& scene, const std::string& name, DeckSection s, c
   const double k[2] = {s.no_shear_strain[0] ? stiff_in_shear * E / G : area.shear_1,
                        s.no_shear_strain[1] ? stiff_in_shear * E / G : area.shear_2};
   if (has_scene_material(s, m) && has_scene_material(beside, m)) {
-    SceneItem& out = scene.add({"section", s.kind}, name, place);
+    SceneTable& out = scene.add({"section", s.kind}, name, place);
     for (const auto& [key, value] : s.sizes) out.set(key, value * std::pow(o.si("m"), power(key)));
     out.set_if(s.shear || s.no_shear_strain[0] || s.no_shear_strain[1], "shear", {k[0], k[1]});
     return;

@@ -21,7 +21,7 @@ RegionData DeckMaterial::carried() const {
 }
 
 void DeckMaterial::write(SceneWriter& scene, const ImportOptions& o) const {
-  SceneItem& out = scene.add({"material", kind}, clean_name(name), "");
+  SceneTable& out = scene.add({"material", kind}, clean_name(name), "");
   out.set_if(!std::isnan(data.E), "E", data.E * o.si("Pa")).set_if(!std::isnan(data.nu), "nu", data.nu);
   for (const DeckKey& k : keys) {
     std::vector<double> v = k.values;

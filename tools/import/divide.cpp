@@ -146,7 +146,7 @@ class Dividing {
       is.assign(m_.X.size(), 0);
       for (const auto a : set) is[a] = 1;
     }
-    const auto supports = in_.at_work({"motion"});
+    const auto supports = in_.scene.ends({"motion"});
     for (const auto& [ends, middle] : middle_) {
       if (middle < first_new_) continue;
       const auto held = [&](std::int64_t a) { return in_.held.contains(a) ? in_.held.at(a) : 0U; };

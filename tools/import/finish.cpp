@@ -248,7 +248,7 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   tell_slivers(in);
   tell_untouched(in);
   const auto complete = [](SceneWriter& scene, const std::vector<NotRead>& not_read) {
-    if (!scene.items().empty()) scene.append(left_out(not_read));
+    if (!scene.empty()) scene.append(left_out(not_read));
   };
   complete(in.scene, in.not_read);
   for (DeckCase& c : in.cases) complete(c.scene, c.not_read);

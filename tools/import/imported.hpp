@@ -95,8 +95,6 @@ struct Imported {
       as_listed;  // node sets that order 2 and divided shells must not complete: the deck's force acts on each of their nodes
 
   void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false, const std::string& hint = "");
-  /// What the tables of these sections, of any scene here, act on or are between.
-  std::set<std::string> at_work(std::initializer_list<std::string_view> sections) const;
 };
 
 /// What the model lacks by it: "load", "support", "tie", "material", "other", or "" where nothing is lost.

@@ -52,7 +52,7 @@ void joints_that_hold(SceneWriter& scene, unsigned components, const Mat3& axes,
   for (size_t i = 0; i < stages.size(); ++i) {
     const auto& [kind, axis, x] = stages[i];
     const std::string to = i + 1 < stages.size() ? massless_body(scene, scene.unique("body", name + "_slide"), at, place) : b;
-    SceneItem& joint = scene.add_unique({"joint", kind}, name, place, {{"a", from}, {"b", to}, {"at", at}});
+    SceneTable& joint = scene.add_unique({"joint", kind}, name, place, {{"a", from}, {"b", to}, {"at", at}});
     if (axis >= 0) joint.set("axis", axes.col(axis));
     if (x >= 0) joint.set("x", axes.col(x));
     from = to;
@@ -152,7 +152,7 @@ std::string sliding_body(SceneWriter& scene, const std::string& name, const Vec3
 void joints_of_sum(SceneWriter& scene, const std::vector<SumTerm>& terms, const std::string& name, const std::string& place) {
   if (terms.size() == 1) return joint_to_slide(scene, name, "", terms[0].end, terms[0].way.normalized(), terms[0].at, place);
   const auto row = [&](const SumTerm& a, const SumTerm& b, const SumTerm* c) {
-    SceneItem& joint = scene.add_unique(
+    SceneTable& joint = scene.add_unique(
         {"joint", "weighted-sum"}, name, place,
         {{"a", a.end}, {"b", b.end}, {"at_a", a.at}, {"at_b", b.at}, {"axis_a", a.way.normalized()}, {"axis_b", b.way.normalized()}});
     if (c)

@@ -19,18 +19,6 @@ void Imported::skip(const std::string& what, const std::string& place, std::int6
   not_read.push_back({what, place, count, output, hint});
 }
 
-std::set<std::string> Imported::at_work(std::initializer_list<std::string_view> sections) const {
-  std::set<std::string> names;
-  const auto add = [&](const SceneWriter& scene) {
-    for (const SceneItem& item : scene.items())
-      if (std::ranges::any_of(sections, [&](std::string_view section) { return item.is(section); }))
-        names.insert(item.ends().begin(), item.ends().end());
-  };
-  add(scene);
-  for (const DeckCase& c : cases) add(c.scene);
-  return names;
-}
-
 std::string clean_name(const std::string& name) {
   std::string s = as_utf8(name);
   std::replace(s.begin(), s.end(), '/', '_');

@@ -41,7 +41,7 @@ SceneValue::SceneValue(double x) : type_(Type::number), toml_(fmt::format("{}", 
   if (toml_.find_first_of(".en") == toml_.npos) toml_ += ".0";
 }
 
-SceneItem::SceneItem(const SceneKind& kind, const std::string& name, const std::string& place, std::initializer_list<SceneKey> keys)
+SceneTable::SceneTable(const SceneKind& kind, const std::string& name, const std::string& place, std::initializer_list<SceneKey> keys)
     : schema_(&schema_of(kind)) {
   const bool list = is_list_section(kind.section);
   const std::string behind = place.empty() ? "\n" : "   # " + place + '\n';
@@ -54,7 +54,7 @@ SceneItem::SceneItem(const SceneKind& kind, const std::string& name, const std::
   for (const auto& [key, value] : keys) set(key, value);
 }
 
-SceneItem& SceneItem::set(std::string_view key, const SceneValue& value) {
+SceneTable& SceneTable::set(std::string_view key, const SceneValue& value) {
   if (!value.given()) return *this;
   const auto of = std::ranges::find(schema_->params, key, &Param::key);
   if (of == schema_->params.end()) fault(fmt::format("{} {} has no key \"{}\"", schema_->section, schema_->kind, key));
@@ -64,16 +64,16 @@ SceneItem& SceneItem::set(std::string_view key, const SceneValue& value) {
   return *this;
 }
 
-SceneItem& SceneItem::comment(const std::string& line) {
+SceneTable& SceneTable::comment(const std::string& line) {
   text_ += "# " + line + '\n';
   return *this;
 }
 
-bool SceneItem::is(std::string_view section) const { return schema_ && schema_->section == section; }
+bool SceneTable::is(std::string_view section) const { return schema_ && schema_->section == section; }
 
 void SceneWriter::begin(const std::string& title, const SceneValue& gravity) {
   if (items_.empty() && !gravity.given()) return;
-  items_.insert(items_.begin(), SceneItem("scene", "", "", {{"title", title}, {"units", "m-kg-s"}, {"gravity", gravity}}));
+  items_.insert(items_.begin(), SceneTable("scene", "", "", {{"title", title}, {"units", "m-kg-s"}, {"gravity", gravity}}));
 }
 
 std::string SceneWriter::unique(std::string_view section, const std::string& wish) {
@@ -87,12 +87,20 @@ bool SceneWriter::take(std::string_view section, const std::string& name) {
 }
 
 std::int64_t SceneWriter::count(std::string_view section) const {
-  return std::ranges::count_if(items_, [&](const SceneItem& item) { return item.is(section); });
+  return std::ranges::count_if(items_, [&](const SceneTable& item) { return item.is(section); });
+}
+
+std::set<std::string> SceneWriter::ends(std::initializer_list<std::string_view> sections) const {
+  std::set<std::string> names;
+  for (const SceneTable& item : items_)
+    if (std::ranges::any_of(sections, [&](std::string_view section) { return item.is(section); }))
+      names.insert(item.ends().begin(), item.ends().end());
+  return names;
 }
 
 std::string SceneWriter::text() const {
   std::string all;
-  for (const SceneItem& item : items_) all += item.text();
+  for (const SceneTable& item : items_) all += item.text();
   return all;
 }
 

@@ -44,7 +44,7 @@ class SceneValue {
   bool given() const { return !toml_.empty(); }
 
  private:
-  friend class SceneItem;
+  friend class SceneTable;
   Type type_ = Type::text;
   std::string toml_;
   std::vector<std::string> texts_;
@@ -63,14 +63,14 @@ struct SceneKind {
 
 /// A table of a scene: [[joint]], [material.NAME], or [time], whose name is "".  A kind or key that the schema does not have, and a value
 /// of another type, is a fault of ours.
-class SceneItem {
+class SceneTable {
  public:
   /// `place` in the deck is told behind the table's name.
-  SceneItem(const SceneKind& kind, const std::string& name, const std::string& place, std::initializer_list<SceneKey> keys);
-  explicit SceneItem(std::string text) : text_(std::move(text)) {}
-  SceneItem& set(std::string_view key, const SceneValue& value);
-  SceneItem& set_if(bool given, std::string_view key, const SceneValue& value) { return given ? set(key, value) : *this; }
-  SceneItem& comment(const std::string& line);
+  SceneTable(const SceneKind& kind, const std::string& name, const std::string& place, std::initializer_list<SceneKey> keys);
+  explicit SceneTable(std::string text) : text_(std::move(text)) {}
+  SceneTable& set(std::string_view key, const SceneValue& value);
+  SceneTable& set_if(bool given, std::string_view key, const SceneValue& value) { return given ? set(key, value) : *this; }
+  SceneTable& comment(const std::string& line);
 
   bool is(std::string_view section) const;
   /// What it acts on, or is between: the texts of its keys on, a and b.
@@ -86,12 +86,12 @@ class SceneItem {
 class SceneWriter {
  public:
   /// Behind all others; the reference holds until the next.
-  SceneItem& add(const SceneKind& kind, const std::string& name, const std::string& place, std::initializer_list<SceneKey> keys = {}) {
+  SceneTable& add(const SceneKind& kind, const std::string& name, const std::string& place, std::initializer_list<SceneKey> keys = {}) {
     return items_.emplace_back(kind, name, place, keys);
   }
   /// The same under a name that is free.
-  SceneItem& add_unique(const SceneKind& kind, const std::string& wish, const std::string& place,
-                        std::initializer_list<SceneKey> keys = {}) {
+  SceneTable& add_unique(const SceneKind& kind, const std::string& wish, const std::string& place,
+                         std::initializer_list<SceneKey> keys = {}) {
     return add(kind, unique(kind.section, wish), place, keys);
   }
   /// Units and title before all others, where there are others or gravity.
@@ -104,12 +104,14 @@ class SceneWriter {
   /// False where another has it.
   bool take(std::string_view section, const std::string& name);
 
-  const std::vector<SceneItem>& items() const { return items_; }
+  bool empty() const { return items_.empty(); }
   std::int64_t count(std::string_view section) const;
+  /// What the tables of these sections act on, or are between.
+  std::set<std::string> ends(std::initializer_list<std::string_view> sections) const;
   std::string text() const;
 
  private:
-  std::vector<SceneItem> items_;
+  std::vector<SceneTable> items_;
   std::set<std::string> given_;  // "section/name"
 };
 

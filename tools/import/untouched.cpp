@@ -25,12 +25,17 @@ void tell_untouched(Imported& in) {
   if (regions.size() < 2) return;
   std::set<std::int64_t> reached;
   const auto all = m.all_names();
-  const std::set<std::string> known(all.begin(), all.end()), at_work = in.at_work({"motion", "joint", "spring", "load", "initial"});
-  for (size_t a = 0; a < m.block.size(); ++a)
-    if (m.block[a] >= 0 && at_work.contains(m.block_name[static_cast<size_t>(m.block[a])])) reached.insert(piece[a]);
-  for (const std::string& name : at_work)
-    if (known.contains(name))  // else a body, the ground
-      for (const auto a : m.nodes_of(name, "")) reached.insert(piece[a]);
+  const std::set<std::string> known(all.begin(), all.end());
+  const auto reach = [&](const SceneWriter& scene) {
+    const auto at_work = scene.ends({"motion", "joint", "spring", "load", "initial"});
+    for (size_t a = 0; a < m.block.size(); ++a)
+      if (m.block[a] >= 0 && at_work.contains(m.block_name[static_cast<size_t>(m.block[a])])) reached.insert(piece[a]);
+    for (const std::string& name : at_work)
+      if (known.contains(name))  // else a body, the ground
+        for (const auto a : m.nodes_of(name, "")) reached.insert(piece[a]);
+  };
+  reach(in.scene);
+  for (const DeckCase& c : in.cases) reach(c.scene);
   std::vector<std::string> lines;
   for (const auto& [p, names] : regions)
     if (!reached.contains(p)) lines.push_back(fmt::format("{} (from cell {} on)", fmt::join(names, ", "), first[p]));

@@ -111,7 +111,7 @@ void BdfScene::materials() {
     if (!law.no_law.empty())
       regions.comment(fmt::format("\n# region {}: material {} has no law here ({}), give it one", toml_text(name), mat->first, law.no_law));
     if (!has_area && !turned && !told) continue;
-    SceneItem& region = regions.add("region", name, "");
+    SceneTable& region = regions.add("region", name, "");
     if (turned) turned_material(property, law, region);
     if (told) {
       used.insert(mat->first);
@@ -126,7 +126,7 @@ void BdfScene::materials() {
 }
 
 /// MAT8 of shells that lie in one plane, with its axes there; without a law where they or the layers turn.
-void BdfScene::turned_material(std::int64_t property, const DeckMaterial& m, SceneItem& region) {
+void BdfScene::turned_material(std::int64_t property, const DeckMaterial& m, SceneTable& region) {
   const auto none = [&](const std::string& what, const std::string& place) {
     in_.skip(what, place);
     region.comment(fmt::format("material {} has no law here ({}, {})", m.name, what, place));

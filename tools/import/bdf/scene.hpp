@@ -27,7 +27,7 @@ class BdfScene {
 
   // scene.cpp
   void materials();
-  void turned_material(std::int64_t property, const DeckMaterial& m, SceneItem& region);
+  void turned_material(std::int64_t property, const DeckMaterial& m, SceneTable& region);
   void hold();
   void supports();
   void equations();

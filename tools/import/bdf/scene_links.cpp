@@ -219,7 +219,7 @@ void BdfScene::bodies() {
     const Vec3 arm = s.mass > 0 ? Vec3(s.first / s.mass) : Vec3(Vec3::Zero());
     const Mat3 J = s.inertia - s.mass * about(arm);
     const double i = si("kg m^2");
-    SceneItem& body = scene_.add("body", end_name(a), place, {{"mass", s.mass * si("kg")}, {"com", point(X(a) + arm)}});
+    SceneTable& body = scene_.add("body", end_name(a), place, {{"mass", s.mass * si("kg")}, {"com", point(X(a) + arm)}});
     const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(J).eigenvalues();
     const bool of_no_body = moments[0] < 0 || moments[2] > (moments[0] + moments[1]) * (1 + 1e-9);
     if (of_no_body && (deck_.chosen.is_static() || deck_.chosen.buckles()))

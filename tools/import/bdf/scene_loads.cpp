@@ -305,7 +305,7 @@ void BdfScene::line_loads() {
     if (factor == 0 || (l->size == 0 && l->size_end == 0)) continue;
     if (from == to) {  // at a point
       const Vec3 value = factor * l->size * way;
-      SceneItem& load =
+      SceneTable& load =
           scene_.add_unique({"load", l->turns ? "torque" : "force"}, beam.name + "_point", l->place, {{"on", beam.body(from)}});
       if (l->turns)
         load.set("torque", value * si("N m"));

@@ -64,9 +64,9 @@ void BdfScene::pairs() {
       }
   };
   each(deck_.glue, deck_.glue_sums, taken.glue, "BGSET", "tie", "glue",
-       [&](const BdfGlue& g, SceneItem& tie) { tie.set_if(g.distance > 0, "gap", g.distance * options_.scale * si("m")); });
+       [&](const BdfGlue& g, SceneTable& tie) { tie.set_if(g.distance > 0, "gap", g.distance * options_.scale * si("m")); });
   each(deck_.contacts, deck_.contact_sums, taken.contact, "BCTSET", "contact", "contact",
-       [&](const BdfGlue& g, SceneItem& contact) { contact.set_if(g.friction > 0, "friction", g.friction); });
+       [&](const BdfGlue& g, SceneTable& contact) { contact.set_if(g.friction > 0, "friction", g.friction); });
 }
 
 }  // namespace hilo

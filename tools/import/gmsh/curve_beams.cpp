@@ -28,7 +28,7 @@ void write_section(SceneWriter& out, const std::string& group, const std::string
     const Entry& e = scene.entries("section").front();
     const SectionKind& of = section_kinds().at(e.kind, option);
     if (!of.area) throw Error("", fmt::format("a section of kind {} is written into the scene", e.kind), "any kind with sizes here");
-    SceneItem& section = out.add({"section", e.kind}, group, "");
+    SceneTable& section = out.add({"section", e.kind}, group, "");
     std::vector<Param> keys_of = of.keys;
     keys_of.push_back({"shear", Type::numbers, "", "", ""});
     for (const Param& key : keys_of) {

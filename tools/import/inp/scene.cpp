@@ -115,7 +115,7 @@ void InpScene::histories() {
     const auto& a = d_.amplitudes.at(key);
     std::vector<double> t = a.t;
     for (auto& x : t) x *= si("s");
-    SceneItem& out = scene_.add("history", clean_name(a.name), "", {{"t", t}, {"value", a.value}});
+    SceneTable& out = scene_.add("history", clean_name(a.name), "", {{"t", t}, {"value", a.value}});
     if (!a.slopes.empty())
       out.set("interpolation", "spline").set("ends", "clamped").set("slopes", {a.slopes[0] / si("s"), a.slopes[1] / si("s")});
   }

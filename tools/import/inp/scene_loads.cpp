@@ -81,7 +81,7 @@ void InpScene::load_of_mass(const InpDistributed& p, const char* kind, const std
   });
   if (!cells.empty()) on.push_back(names_.cells(fmt::format("{}_{}", wish, ++made_[wish]), cells));
   for (const std::string& name : on) {
-    SceneItem& load = scene_.add_unique({"load", kind}, name + "_" + wish, p.place, {{"on", name}});
+    SceneTable& load = scene_.add_unique({"load", kind}, name + "_" + wish, p.place, {{"on", name}});
     for (const auto& [key, value] : keys) load.set(key, value);
     load.set("history", *past);
   }

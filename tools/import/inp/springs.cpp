@@ -83,7 +83,7 @@ class PointSpring {
     law(on, slide, point(at_on), axis_.cwiseProduct(point(at)) + (Vec3::Ones() - axis_).cwiseProduct(point(at_on)) + far * axis_);
   }
   void law(const std::string& a, const std::string& b, const Vec3& at_a, const Vec3& at_b) const {
-    SceneItem& spring =
+    SceneTable& spring =
         scene_.add({"spring", s_.value.table ? "curve" : "axial"}, name_, place_, {{"a", a}, {"b", b}, {"at_a", at_a}, {"at_b", at_b}});
     if (s_.value.table)
       spring.set("extension", x_).set("force", f_);
