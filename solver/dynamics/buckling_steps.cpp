@@ -7,6 +7,7 @@
 // with K the stiffness of the drawn state, and K' what stresses, forces of joints and loads that follow add to it there as the loads grow:
 // a difference between the stresses at two states along the first displacement under the loads.
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <cmath>
@@ -250,10 +251,7 @@ class BucklingSteps final : public Steps {
                     "kind = \"stvk\", or analysis = \"path\"");
     require_held(system, drawn.q, drawn.t, 1, where);
     system.commit(drawn.q);
-    for (const LinearRegion& r : system.part<LinearRegions>().regions)
-      if (const Modes& m = system.modes[static_cast<size_t>(r.modes)]; m.n_modes > 0 && !m.stiffens)
-        warn(where, fmt::format("linear region \"{}\": its stresses change no stiffness, so factors are too large ({})",
-                                system.bodies[m.body].name, m.better()));
+    for (const LinearRegion& r : system.part<LinearRegions>().regions) require_stiffening(system.modes[static_cast<size_t>(r.modes)]);
     run_.audit->start(drawn);
     run_.recorder->first(drawn, run_.audit->ledger());
     Progress progress(run_.options.quiet, 0, time_.number("modes"));
@@ -276,6 +274,17 @@ class BucklingSteps final : public Steps {
   }
 
  private:
+  /// Modes whose stresses change no stiffness make factors too large: the scene must say that it wants them.
+  void require_stiffening(const Modes& m) const {
+    if (m.n_modes == 0 || m.stiffens) return;
+    const std::string& name = run_.system.bodies[m.body].name;
+    const std::string what = fmt::format("linear region \"{}\": its stresses change no stiffness, so factors are too large", name);
+    const auto says_so = [&](const Entry& e) { return e.given("stiffening") && fnmatch(e.name.c_str(), name.c_str(), 0) == 0; };
+    if (m.of_beams || std::ranges::none_of(run_.scene.entries("region"), says_so))
+      throw Error(time_.where("analysis"), what, fmt::format("{}{}", m.better(), m.of_beams ? "" : "; stiffening = false takes it as it is"));
+    warn(time_.where("analysis"), what);
+  }
+
   /// The shape, of a hundred thousandth of the scene at most, on the drawn state, with the forces that it makes.
   void record(const FoundShape& s) {
     System& system = run_.system;
