@@ -85,15 +85,16 @@ Redundancy choose_rows(System& system, const Config& q, double dependent) {
       active[r] = false;
       c.set_active(active);
       std::vector<int> others;
+      const bool drives = is_drive(system, row);
       bool on_drives = false;
       for (const auto& [i, factor] : found.depends[k - found.rank]) {
         if (std::abs(factor) <= 1e-6) continue;
         const auto other = all.rows[group[found.order[i]]];
         if (other.first != one) others.push_back(other.first);
-        on_drives = on_drives || is_drive(system, other);
+        on_drives = on_drives || (drives && is_drive(system, other));
       }
       const std::string names = names_of(system, others);
-      if (is_drive(system, row) && !on_drives) report.held.push_back({one, names});
+      if (drives && !on_drives) report.held.push_back({one, names});
       report.dropped.push_back(fmt::format(
           "{} row {}{}", c.label(), r + 1,
           others.empty() ? fmt::format(" (depends on the {}'s own rows)", c.section()) : fmt::format(" (depends on {})", names)));
@@ -127,26 +128,23 @@ void displace(const System& system, Config& q, const Eigen::VectorXd& y) {
 class Nearest {
  public:
   static constexpr double mu = 1e-10;  // far below the square of `aside`, which rows that are independent beside q alone have
-  bool factor(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& plane) {
-    A_ = &A, plane_ = plane;
-    Eigen::SparseMatrix<double> K = A * Eigen::SparseMatrix<double>(A.transpose()), I(K.rows(), K.cols());
+  bool factor(Eigen::SparseMatrix<double> A) {
+    A_ = std::move(A);
+    Eigen::SparseMatrix<double> K = A_ * Eigen::SparseMatrix<double>(A_.transpose()), I(K.rows(), K.cols());
     I.setIdentity();
     K += mu * I;
-    if (!factors_.factor(K)) return false;
-    if (plane_.size() > 0) through_ = factors_.solve(plane_);
-    return true;
+    return factors_.factor(K);
   }
   /// The part of y that the rows leave.
   Eigen::VectorXd left_of(const Eigen::VectorXd& y) const { return mu * factors_.solve(y); }
-  /// A (A^T A)^-1 b, without what leaves the plane.
-  Eigen::VectorXd operator()(const Eigen::VectorXd& b) const {
-    const Eigen::VectorXd y = factors_.solve(*A_ * b);
-    return y - plane_.dot(y) / (1 + plane_.dot(through_)) * through_;
+  /// A (A^T A)^-1 b, without what leaves the plane of this normal.
+  Eigen::VectorXd within(const Eigen::VectorXd& plane, const Eigen::VectorXd& b) const {
+    const Eigen::VectorXd y = factors_.solve(A_ * b), through = factors_.solve(plane);
+    return y - plane.dot(y) / (1 + plane.dot(through)) * through;
   }
 
  private:
-  const Eigen::SparseMatrix<double>* A_ = nullptr;
-  Eigen::VectorXd plane_, through_;  // its normal, and that through the factors
+  Eigen::SparseMatrix<double> A_;
   SparseCholesky factors_;
 };
 
@@ -161,23 +159,31 @@ std::optional<Config> beside(const System& system, const Config& q, const Eigen:
   constexpr int iterations = 40;
   UnitRows unit = unit_rows(system, q, rows);
   Nearest nearest;
-  if (!nearest.factor(unit.A, {})) return {};
+  if (!nearest.factor(std::move(unit.A))) return {};
   Eigen::VectorXd y = nearest.left_of(direction);
   if (!(y.norm() > 1e-6 * direction.norm())) return {};
   y *= far * system.length / y.cwiseAbs().maxCoeff();
   const Eigen::VectorXd plane = y.normalized();
   Config out = q;
   displace(system, out, y);
-  for (int k = 0; k < iterations; ++k) {
+  double last = 0;  // gap of the pose before
+  for (int k = 0;; ++k) {
     unit = unit_rows(system, out, rows);
     const Eigen::VectorXd g = gaps(system, unit, out, t);
-    if (g.size() == 0 || g.cwiseAbs().maxCoeff() < 1e-14 * system.length) return out;
-    if (!nearest.factor(unit.A, plane)) return {};
-    displace(system, out, -nearest(g));
+    const double gap = g.size() > 0 ? g.cwiseAbs().maxCoeff() : 0;
+    if (gap < (k < iterations ? 1e-14 : 1e-12) * system.length) return out;
+    if (k == iterations) return {};
+    // Rows of a pose before close the gap too, where they are not about to become dependent: a factor is dear in large nets.
+    Eigen::VectorXd way;
+    const bool closes = k == 0 || gap < 0.1 * last;
+    if (closes) way = nearest.within(plane, g);
+    if (!closes || way.cwiseAbs().maxCoeff() > 0.1 * far * system.length) {
+      if (!nearest.factor(std::move(unit.A))) return {};
+      way = nearest.within(plane, g);
+    }
+    displace(system, out, -way);
+    last = gap;
   }
-  const Eigen::VectorXd g = gaps(system, unit_rows(system, out, rows), out, t);
-  if (g.cwiseAbs().maxCoeff() < 1e-12 * system.length) return out;
-  return {};
 }
 
 /// Largest move of a node or centre, and turn times the scene's length, between two poses.
