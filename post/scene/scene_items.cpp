@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "model/beam_line.hpp"
+#include "model/height_grid.hpp"
 #include "physics/contact/obstacle_kinds.hpp"
 
 namespace hilo {
@@ -332,9 +333,23 @@ class Collector {
             });
           }
         break;
-      case Distance::Kind::height_field:  // its heights are in a file
-        item.glyph = Glyph::cross;
+      case Distance::Kind::height_field: {
+        const HeightGrid grid = height_grid_of(e, scene_);
+        const auto nx = static_cast<int>(grid.x.size()), ny = static_cast<int>(grid.y.size());
+        const auto net = [&](int n_lines, int n_points, auto&& at) {  // few enough lines to be seen apart
+          const int lines = std::min(n_lines - 1, 16), pieces = std::min(n_points - 1, 200);
+          for (int k = 0; k <= lines; ++k) {
+            auto& points = item.lines.emplace_back();
+            for (int m = 0; m <= pieces; ++m) {
+              const auto [i, j] = at(k * (n_lines - 1) / lines, m * (n_points - 1) / pieces);
+              points.push_back(item.at + made.axes * Vec3(grid.x[i], grid.y[j], grid.heights[static_cast<size_t>(j) * nx + i]));
+            }
+          }
+        };
+        net(ny, nx, [](int line, int point) { return std::pair(point, line); });
+        net(nx, ny, [](int line, int point) { return std::pair(line, point); });
         break;
+      }
     }
   }
 

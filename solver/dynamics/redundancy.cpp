@@ -175,9 +175,9 @@ std::optional<Config> beside(const System& system, const Config& q, const Eigen:
     if (k == iterations) return {};
     // Rows of a pose before close the gap too, where they are not about to become dependent: a factor is dear in large nets.
     Eigen::VectorXd way;
-    const bool closes = k == 0 || gap < 0.1 * last;
+    const bool closes = k == 0 || gap < 0.5 * last;
     if (closes) way = nearest.within(plane, g);
-    if (!closes || way.cwiseAbs().maxCoeff() > 0.1 * far * system.length) {
+    if (!closes || way.cwiseAbs().maxCoeff() > far * system.length) {
       if (!nearest.factor(std::move(unit.A))) return {};
       way = nearest.within(plane, g);
     }

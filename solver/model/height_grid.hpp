@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A grid of heights in a CSV file: a word and the x of the columns, then lines of a y and the heights there.
+// Heights over a grid, of a file: a CSV of a word and the x of the columns, then lines of a y and the heights there; or a grey PNG image.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace hilo {
 
-/// x and y rise, two at least; heights row by row, in the numbers of the file.
+struct Entry;
+class Scene;
+
+/// x and y rise, two at least; heights row by row.
 struct HeightGrid {
   std::vector<double> x, y, heights;
 };
-/// Errors with the place in the file; `where` names it.
+/// Of a CSV, in its own numbers.  Errors with the place in the file; `where` names it.
 HeightGrid read_height_grid(const std::string& path, const std::string& where);
+/// Of an [[obstacle]] of kind height-field [m].
+HeightGrid height_grid_of(const Entry& e, const Scene& scene);
 
 }  // namespace hilo

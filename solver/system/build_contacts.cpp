@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <numeric>
 #include <set>
 
@@ -42,10 +41,7 @@ struct Extremes {
 
 /// The heights of an obstacle of that kind.
 std::shared_ptr<const HeightField> height_field_of(const Entry& e, const Scene& scene) {
-  const std::filesystem::path file = e.text("file");
-  HeightGrid grid = read_height_grid((scene.folder == "." ? file : scene.folder / file).string(), e.where("file"));
-  for (std::vector<double>* list : {&grid.x, &grid.y, &grid.heights})
-    for (double& x : *list) x *= to_si("m", scene.units);
+  HeightGrid grid = height_grid_of(e, scene);
   auto out = std::make_shared<HeightField>(std::move(grid.x), std::move(grid.y), grid.heights);
   if (!out->is_finite()) e.refuse("file", "heights or slopes of the field are too large");
   return out;
