@@ -35,12 +35,11 @@ MinimumNorm::MinimumNorm(const System& system) : system_(system) {
   }
 }
 
-std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const double> lambda) {
+void MinimumNorm::take_rows(const Stage& stage) {
   const auto all = system_.constraints();
-  const auto n = static_cast<int>(all.size());
-  std::vector<DenseRows> G(n);
+  std::vector<DenseRows> G(all.size());
   std::vector<Mat3> scale(A_.n_blocks(), Mat3::Zero());  // of unknowns: their rows next to each other are near unit ones
-  for (int j = 0; j < n; ++j) {
+  for (int j = 0; j < cliques_.size(); ++j) {
     G[j] = all[j]->gradient(stage);
     for (size_t k = 0; k < cliques_[j].size(); ++k) {
       const auto part = G[j].middleCols<3>(3 * static_cast<Eigen::Index>(k));
@@ -50,7 +49,7 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   std::vector<Vec3> squares(scale.size(), Vec3::Zero());  // along the axes of each block, by rows: those of the sum end in round-off
   std::vector<Mat3> axes;
   for (const Mat3& S : scale) axes.push_back(Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvectors());
-  for (int j = 0; j < n; ++j)
+  for (int j = 0; j < cliques_.size(); ++j)
     for (size_t k = 0; k < cliques_[j].size(); ++k) {
       const int block = cliques_[j][k];
       squares[block] += (G[j].middleCols<3>(3 * static_cast<Eigen::Index>(k)) * axes[block]).colwise().squaredNorm().transpose();
@@ -61,58 +60,61 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
     scale[block] = axes[block] * factor.asDiagonal() * axes[block].transpose();
   }
   A_.zero();
-  for (int j = 0; j < n; ++j) {
-    DenseRows scaled = G[j];
+  rows_.clear(), column_.clear(), value_.clear();
+  for (int j = 0; j < cliques_.size(); ++j) {
+    DenseRows& own = G[j];
     for (size_t k = 0; k < cliques_[j].size(); ++k) {
-      auto part = scaled.middleCols<3>(3 * static_cast<Eigen::Index>(k));
+      auto part = own.middleCols<3>(3 * static_cast<Eigen::Index>(k));
       part = (part * scale[cliques_[j][k]]).eval();
     }
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, max_directions, max_directions> K =
-        decltype(K)::Zero(scaled.cols(), scaled.cols());
-    for (Eigen::Index r = 0; r < scaled.rows(); ++r)
-      for (Eigen::Index i = 0; i < scaled.cols(); ++i)
-        if (scaled(r, i) != 0) K.row(i) += scaled(r, i) * scaled.row(r);
+        decltype(K)::Zero(own.cols(), own.cols());
+    for (Eigen::Index r = 0; r < own.rows(); ++r) {
+      for (Eigen::Index i = 0; i < own.cols(); ++i)
+        if (own(r, i) != 0) {
+          K.row(i) += own(r, i) * own.row(r);
+          column_.push_back(3 * cliques_[j][static_cast<size_t>(i / 3)] + static_cast<int>(i % 3)), value_.push_back(own(r, i));
+        }
+      rows_.push_back({j, all[j]->row() + static_cast<int>(r), all[j]->active()[static_cast<size_t>(r)], value_.size()});
+    }
     A_.add(j, K.data());
   }
   constexpr double d[3] = {shift, shift, shift};
   for (int i = 0; i < A_.n_blocks(); ++i) A_.add_diagonal(i, d);
-  const auto scaled = [&](Eigen::VectorXd y) {
-    for (size_t block = 0; block < scale.size(); ++block) {
-      auto part = y.segment<3>(3 * static_cast<Eigen::Index>(block));
-      part = (scale[block] * part).eval();
-    }
-    return y;
-  };
-  const auto forces = [&](std::span<const double> of, bool all_rows) {  // G^T lambda, scaled
-    Eigen::VectorXd out = Eigen::VectorXd::Zero(A_.n());
-    for (int j = 0; j < n; ++j)
-      for (int r = 0; r < G[j].rows(); ++r)
-        for (size_t k = 0; k < cliques_[j].size() && (all_rows || all[j]->active()[r]); ++k)
-          out.segment<3>(3 * cliques_[j][k]) +=
-              of[all[j]->row() + r] * G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
-    return scaled(std::move(out));
-  };
-  const auto shares = [&](const Eigen::VectorXd& of) {  // G y
-    const Eigen::VectorXd y = scaled(of);
-    std::vector<double> out(lambda.size(), 0.0);
-    Eigen::Matrix<double, max_directions, 1> own;
-    for (int j = 0; j < n; ++j) {
-      const auto blocks = cliques_[j];
-      for (size_t k = 0; k < blocks.size(); ++k) own.segment<3>(3 * static_cast<Eigen::Index>(k)) = y.segment<3>(3 * blocks[k]);
-      Eigen::Map<Eigen::VectorXd>(&out[all[j]->row()], G[j].rows()) = G[j] * own.head(G[j].cols());
-    }
-    return out;
-  };
+}
+
+Eigen::VectorXd MinimumNorm::forces(std::span<const double> lambda, bool all_rows) const {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(A_.n());
+  size_t k = 0;
+  for (const Row& row : rows_) {
+    const double own = all_rows || row.active ? lambda[row.place] : 0;
+    for (; k < row.end; ++k) out[column_[k]] += own * value_[k];
+  }
+  return out;
+}
+
+std::vector<double> MinimumNorm::shares(const Eigen::VectorXd& y, size_t n) const {
+  std::vector<double> out(n, 0.0);
+  size_t k = 0;
+  for (const Row& row : rows_)
+    for (; k < row.end; ++k) out[row.place] += value_[k] * y[column_[k]];
+  return out;
+}
+
+std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const double> lambda) {
+  take_rows(stage);
   const Eigen::VectorXd f = forces(lambda, false);
   double size = 0;  // of the forces of single rows, which may cancel
-  for (int j = 0; j < n; ++j)
-    for (int r = 0; r < G[j].rows(); ++r)
-      for (size_t k = 0; k < cliques_[j].size() && all[j]->active()[r]; ++k)
-        size = std::hypot(
-            size, lambda[all[j]->row() + r] * (G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)) * scale[cliques_[j][k]]).norm());
+  size_t at = 0;
+  for (const Row& row : rows_) {
+    double square = 0;
+    for (; at < row.end; ++at) square += value_[at] * value_[at];
+    if (row.active) size = std::hypot(size, lambda[row.place] * std::sqrt(square));
+  }
   std::vector<double> best;
   Eigen::VectorXd left;  // of f by the best
-  // conjugate gradients on G^T G y = f: a few, as the factors err by their shift alone; at round-off they would go astray
+  // conjugate gradients on G^T G y = f, from nothing: what an instant before left where rows hardly act would be shares that mean nothing.
+  // A few passes, as the factors err by their shift alone; at round-off they would go astray.
   const auto find = [&](int passes, double enough) {
     std::vector<double> out(lambda.size(), 0.0);
     Eigen::VectorXd r = f, z(f.size()), p = Eigen::VectorXd::Zero(f.size());
@@ -123,7 +125,7 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
       const double now = r.dot(z);
       if (!(now > 0)) break;
       p = z + (pass > 0 ? now / before : 0) * p, before = now;
-      const std::vector<double> q = shares(p);
+      const std::vector<double> q = shares(p, out.size());
       const double alpha = now / Eigen::Map<const Eigen::VectorXd>(q.data(), static_cast<Eigen::Index>(q.size())).squaredNorm();
       for (size_t i = 0; i < out.size(); ++i) out[i] += alpha * q[i];
       r = f - forces(out, true);
@@ -141,12 +143,14 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   }
   Eigen::Index worst = 0;
   if (left.size() > 0) left.cwiseAbs().maxCoeff(&worst);
-  int j = 0;
-  while (j < n - 1 && std::ranges::find(cliques_[j], static_cast<int>(worst / 3)) == cliques_[j].end()) ++j;
+  const auto meets = [&](int k) { return column_[static_cast<size_t>(k)] / 3 == static_cast<int>(worst / 3); };
+  int k = 0;
+  while (k + 1 < static_cast<int>(column_.size()) && !meets(k)) ++k;
+  const Row& row = *std::ranges::find_if(rows_, [&](const Row& one) { return static_cast<size_t>(k) < one.end; });
   if (!told_)
     warn("",
          fmt::format("{}: shares of redundant rows are not found (off by {:.1e}): at such instants reactions are those of the rows kept",
-                     all[j]->label(), size > 0 ? left.norm() / size : 1));
+                     system_.constraints()[row.joint]->label(), size > 0 ? left.norm() / size : 1));
   told_ = true;
   return {lambda.begin(), lambda.end()};
 }

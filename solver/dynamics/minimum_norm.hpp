@@ -20,9 +20,24 @@ class MinimumNorm {
   std::vector<double> operator()(const Stage& stage, std::span<const double> lambda);
 
  private:
+  /// The rows of all joints, scaled, and A_ of them.
+  void take_rows(const Stage& stage);
+  /// G^T lambda, of all rows or of those kept.
+  Eigen::VectorXd forces(std::span<const double> lambda, bool all_rows) const;
+  /// G y, laid out like the n numbers of lambda.
+  std::vector<double> shares(const Eigen::VectorXd& y, size_t n) const;
+
+  struct Row {
+    int joint, place;  // in lambda
+    bool active;
+    size_t end;  // of its entries
+  };
   const System& system_;
   Cliques cliques_;  // of joints
   BlockCsr A_;       // G^T G, scaled and shifted
+  std::vector<Row> rows_;
+  std::vector<int> column_;    // of the entries of G, scaled, row by row
+  std::vector<double> value_;  //
   std::unique_ptr<Factors> factors_;
   bool serves_ = false;  // the factors of an instant before, of many unknowns: a few more passes cost less than factors
   bool told_ = false;

@@ -129,7 +129,7 @@ class Nearest {
  public:
   static constexpr double mu = 1e-10;  // far below the square of `aside`, which rows that are independent beside q alone have
   bool factor(Eigen::SparseMatrix<double> A) {
-    A_ = std::move(A);
+    A_ = std::move(A), through_.resize(0);
     Eigen::SparseMatrix<double> K = A_ * Eigen::SparseMatrix<double>(A_.transpose()), I(K.rows(), K.cols());
     I.setIdentity();
     K += mu * I;
@@ -138,14 +138,16 @@ class Nearest {
   /// The part of y that the rows leave.
   Eigen::VectorXd left_of(const Eigen::VectorXd& y) const { return mu * factors_.solve(y); }
   /// A (A^T A)^-1 b, without what leaves the plane of this normal.
-  Eigen::VectorXd within(const Eigen::VectorXd& plane, const Eigen::VectorXd& b) const {
-    const Eigen::VectorXd y = factors_.solve(A_ * b), through = factors_.solve(plane);
-    return y - plane.dot(y) / (1 + plane.dot(through)) * through;
+  Eigen::VectorXd within(const Eigen::VectorXd& plane, const Eigen::VectorXd& b) {
+    if (through_.size() == 0) through_ = factors_.solve(plane);
+    const Eigen::VectorXd y = factors_.solve(A_ * b);
+    return y - plane.dot(y) / (1 + plane.dot(through_)) * through_;
   }
 
  private:
   Eigen::SparseMatrix<double> A_;
   SparseCholesky factors_;
+  Eigen::VectorXd through_;  // the plane's normal through the factors
 };
 
 constexpr double round_off = 1e-9;  // what others leave of a unit row that depends on them

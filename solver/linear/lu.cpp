@@ -132,7 +132,7 @@ class Umfpack final : public Factors, KeptEntries {
   Umfpack() {
     make_room_for_blas();
     umfpack_di_defaults(control_);
-    control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+    control_[UMFPACK_ORDERING] = UMFPACK_ORDERING_CHOLMOD;  // nested dissection where minimum degree would fill much
     control_[UMFPACK_IRSTEP] = 0;
   }
   ~Umfpack() override {

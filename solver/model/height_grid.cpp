@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <new>
 
 #include "base/error.hpp"
@@ -34,13 +35,14 @@ class GreyImage {
 
   size_t width() const { return png_get_image_width(png_, info_); }
   size_t height() const { return png_get_image_height(png_, info_); }
-  int bits() const { return png_get_bit_depth(png_, info_); }
+  int bits() const { return bits_; }
   bool is_grey() const { return png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY && !png_get_valid(png_, info_, PNG_INFO_tRNS); }
   const std::string& why() const { return why_; }
 
   bool read_head() {
     if (setjmp(png_jmpbuf(png_))) return false;
     png_read_info(png_, info_);
+    bits_ = png_get_bit_depth(png_, info_);  // packing changes it
     png_set_packing(png_), png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);
     return true;
@@ -80,13 +82,24 @@ class GreyImage {
   std::string why_;
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
+  int bits_ = 0;
   std::vector<unsigned char> pixels_;
   std::vector<png_bytep> rows_;
 };
 
-/// Heights of an image, its lowest line first: `size` from the first pixel to the last along x and y, `range` of black and of white [m].
-HeightGrid of_image(const std::string& bytes, const std::string& path, const std::string& where, const std::vector<double>& size,
-                    const std::vector<double>& range) {
+constexpr std::string_view signature = "\x89PNG\r\n\x1a\n";
+
+bool is_image(const std::string& path) {
+  char first[signature.size()];
+  return std::filesystem::is_regular_file(path) && std::ifstream(path, std::ios::binary).read(first, sizeof first) &&
+         std::string_view(first, sizeof first) == signature;
+}
+
+}  // namespace
+
+HeightGrid read_height_image(const std::string& path, const std::string& where, std::span<const double> size,
+                             std::span<const double> range) {
+  const std::string bytes = read_text_file(path, where);
   GreyImage image(bytes);
   const auto unreadable = [&] { return Error(path, fmt::format("this image cannot be read: {}", image.why())); };
   if (!image.read_head()) throw unreadable();
@@ -110,18 +123,14 @@ HeightGrid of_image(const std::string& bytes, const std::string& path, const std
   return grid;
 }
 
-}  // namespace
-
 HeightGrid height_grid_of(const Entry& e, const Scene& scene) {
   const std::filesystem::path file = e.text("file");
   const std::string path = (scene.folder == "." ? file : scene.folder / file).string(), where = e.where("file");
-  constexpr std::string_view signature = "\x89PNG\r\n\x1a\n";
-  const std::string bytes = std::filesystem::exists(path) ? read_text_file(path, where) : "";
-  if (bytes.starts_with(signature)) {
+  if (is_image(path)) {
     for (const char* key : {"size", "heights"})
       if (!e.has(key))
         e.refuse("file", fmt::format("an image without `{}`", key), "size = [along x, along y], heights = [of black, of white]");
-    return of_image(bytes, path, where, e.numbers("size"), e.numbers("heights"));
+    return read_height_image(path, where, e.numbers("size"), e.numbers("heights"));
   }
   for (const char* key : {"size", "heights"})
     if (e.given(key)) e.refuse(key, fmt::format("`{}` is of a PNG image, which {} is not", key, path), "a CSV has its own numbers");

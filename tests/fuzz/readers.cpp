@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "import/gmsh/script.hpp"
 #include "import/imported.hpp"
+#include "model/height_grid.hpp"
 #include "model/mesh.hpp"
 #include "model/mesh_tags.hpp"
 #include "model/scene.hpp"
@@ -47,6 +48,10 @@ void table(const std::string& path) {
     }
 }
 void points(const std::string& path) { read_points_csv(path, "fuzz"); }
+void heights(const std::string& path) {
+  constexpr double size[2] = {1, 1}, range[2] = {0, 1e-3};
+  read_height_image(path, "fuzz", size, range);
+}
 void section(const std::string& path) { meshed_face(section_mesh_of(read_text_file(path), path), 0.3); }
 void history(const std::string& path) { read_history_csv(path, "fuzz"); }
 
@@ -68,6 +73,7 @@ std::span<const Reader> readers() {
       {"csv", ".csv", table},
       {"points", ".csv", points},
       {"history", ".csv", history},
+      {"heights", ".png", heights},
       {"section", ".msh", section},
       {"store", ".h5", store},
   };

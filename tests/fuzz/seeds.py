@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Seeds of the fuzzer, a folder for each reader: decks that stand in the tests' sources, small meshes in every format that gmsh writes, and
 files of hilo.  Usage: seeds.py REPO BIN FOLDER"""
-import glob, os, re, shutil, subprocess, sys, tempfile
+import glob, os, re, shutil, struct, subprocess, sys, tempfile, zlib
 
 repo, bin, folder = (os.path.realpath(p) for p in sys.argv[1:4])
 
@@ -30,6 +30,13 @@ for reader, pattern in [("bdf", "import_bdf*"), ("inp", "import_inp*"), ("vtk", 
         with open(path) as f:
             for number, text in enumerate(re.findall(r'R"\((.*?)\)"', f.read(), re.S)):
                 put(reader, f"{os.path.basename(path)}-{number}", text.encode())
+
+for bits in 4, 8, 16:  # grey images of 4 x 3 pixels
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    lines = b"".join(bytes([0] + [37 * (i + j) % 256 for i in range(bits // 2)]) for j in range(3))
+    put("heights", f"{bits}.png", b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 4, 3, bits, 0, 0, 0, 0)) +
+        chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
 
 os.chdir(tempfile.mkdtemp())
 solids = ["Point(1) = {0, 0, 0}; Extrude {1, 0, 0} {Point{1}; Layers{1};} Extrude {0, 1, 0} {Line{1}; Layers{2}; Recombine;} "

@@ -242,19 +242,32 @@ TEST(HeightField, SaysWhatIsWrongWithItsFile) {
   EXPECT_NE(ran.err.find("no file road.csv"), std::string::npos) << ran.err;
 }
 
-/// Levels of grey, the lowest line of the picture first, as a PNG of 16 or 8 bits or of colours.
-void write_image(const std::filesystem::path& path, unsigned nx, const std::vector<unsigned>& levels, unsigned format) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION, image.width = nx, image.height = static_cast<unsigned>(levels.size()) / nx, image.format = format;
-  std::vector<std::uint16_t> wide;
-  std::vector<std::uint8_t> narrow;
-  for (unsigned j = image.height; j-- > 0;)
-    for (unsigned i = 0; i < nx; ++i) {
-      wide.push_back(static_cast<std::uint16_t>(levels[j * nx + i]));
-      narrow.insert(narrow.end(), format == PNG_FORMAT_RGB ? 3 : 1, static_cast<std::uint8_t>(levels[j * nx + i]));
-    }
-  const bool is_wide = format == PNG_FORMAT_LINEAR_Y;
-  ASSERT_TRUE(png_image_write_to_file(&image, path.c_str(), 0, is_wide ? static_cast<void*>(wide.data()) : narrow.data(), 0, nullptr));
+/// Levels of grey, the lowest line of the picture first, as a PNG of so many bits, grey or with equal colours.
+void write_image(const std::filesystem::path& path, unsigned nx, const std::vector<unsigned>& levels, int bits,
+                 int colour = PNG_COLOR_TYPE_GRAY) {
+  const auto ny = static_cast<unsigned>(levels.size()) / nx;
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_init_io(png, file);
+  png_set_IHDR(png, info, nx, ny, bits, colour, PNG_INTERLACE_ADAM7, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  png_set_packing(png);
+  std::vector<std::vector<unsigned char>> lines(ny);
+  std::vector<png_bytep> rows;
+  for (unsigned j = 0; j < ny; ++j) {
+    for (unsigned i = 0; i < nx; ++i)
+      for (int sample = 0; sample < (colour == PNG_COLOR_TYPE_RGB ? 3 : 1); ++sample) {
+        const unsigned level = levels[(ny - 1 - j) * nx + i];
+        if (bits == 16) lines[j].push_back(static_cast<unsigned char>(level / 256));
+        lines[j].push_back(static_cast<unsigned char>(level % 256));
+      }
+    rows.push_back(lines[j].data());
+  }
+  png_write_image(png, rows.data());
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  std::fclose(file);
 }
 
 // Truth: the run over the same heights as CSV; a picture's lowest line is that of the least y, and the bowl is not that of a mirror.
@@ -262,32 +275,35 @@ TEST(HeightField, AnImageIsItsLevelsOfGrey) {
   const Road c;
   constexpr unsigned nx = 9, ny = 7;
   const double low = -0.02, high = 0.4;
-  std::vector<unsigned> levels;
-  for (unsigned j = 0; j < ny; ++j)
-    for (unsigned i = 0; i < nx; ++i)
-      levels.push_back(
-          static_cast<unsigned>(65535 * (0.04 + 0.4 * std::pow(i / 8. - 0.4, 2) + 0.7 * std::pow(j / 6. - 0.3, 2) + 0.1 * i * j / 48)));
-  std::ofstream csv(c / "road.csv");
-  csv << "y\\x";
-  for (unsigned i = 0; i < nx; ++i) csv << fmt::format(",{:.17g}", 1.6 * i / 8);
-  for (unsigned j = 0; j < ny; ++j) {
-    csv << fmt::format("\n{:.17g}", 1.2 * j / 6);
-    for (unsigned i = 0; i < nx; ++i) csv << fmt::format(",{:.17g}", low + (high - low) * levels[j * nx + i] / 65535);
+  for (const int bits : {4, 8, 16}) {
+    const unsigned white = (1U << bits) - 1;
+    std::vector<unsigned> levels;
+    std::ofstream csv(c / "road.csv");
+    csv << "y\\x";
+    for (unsigned i = 0; i < nx; ++i) csv << fmt::format(",{:.17g}", 1.6 * i / 8);
+    for (unsigned j = 0; j < ny; ++j) {
+      csv << fmt::format("\n{:.17g}", 1.2 * j / 6);
+      for (unsigned i = 0; i < nx; ++i) {
+        const double h = 0.04 + 0.4 * std::pow(i / 8. - 0.4, 2) + 0.7 * std::pow(j / 6. - 0.3, 2) + 0.1 * i * j / 48;
+        levels.push_back(static_cast<unsigned>(white * h));
+        csv << fmt::format(",{:.17g}", low + (high - low) * levels.back() / white);
+      }
+    }
+    csv.close();
+    write_image(c / "road.png", nx, levels, bits);
+    const auto way = [&](const std::string& obstacle) {
+      return c.run(ball(obstacle, {0.9, 0.7, 0.4}, {0.2, -0.1, 0}, 0.1, "stiffness = 1e4\nfriction = 0.2", "end = 1\nstep = 0.005"))
+          .history("probe/p");
+    };
+    const auto x = way(field), of_image = way("kind = \"height-field\"\nfile = \"road.png\"\nsize = [1.6, 1.2]\nheights = [-0.02, 0.4]");
+    EXPECT_GT((x.rowwise() - x.row(0)).cwiseAbs().maxCoeff(), 0.1) << bits;
+    EXPECT_LT((x - of_image).cwiseAbs().maxCoeff(), 1e-9) << bits;
   }
-  csv.close();
-  write_image(c / "road.png", nx, levels, PNG_FORMAT_LINEAR_Y);
-  const auto way = [&](const std::string& obstacle) {
-    return c.run(ball(obstacle, {0.9, 0.7, 0.4}, {0.2, -0.1, 0}, 0.1, "stiffness = 1e4\nfriction = 0.2", "end = 1\nstep = 0.005"))
-        .history("probe/p");
-  };
-  const auto x = way(field), of_image = way("kind = \"height-field\"\nfile = \"road.png\"\nsize = [1.6, 1.2]\nheights = [-0.02, 0.4]");
-  EXPECT_GT((x.rowwise() - x.row(0)).cwiseAbs().maxCoeff(), 0.1);
-  EXPECT_LT((x - of_image).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 TEST(HeightField, SaysWhatIsWrongWithItsImage) {
   const Road c;
-  const std::string image = "kind = \"height-field\"\nfile = \"road.png\"\n", sizes = "size = [1, 1]\nheights = [0, 1]\n";
+  const std::string image = "kind = \"height-field\"\nfile = \"road.png\"\n", sizes = "size = [1, 1]\nheights = [0, 4]\n";
   const auto said = [&](const std::string& obstacle) {
     std::ofstream(c / "scene.toml") << ball(obstacle, {0.5, 0.5, 3}, Vec3::Zero(), 0.1, "stiffness = 1e5", "end = 0.01\nstep = 0.005");
     return c.Case::run("hilo-solve scene.toml -o run.h5").err;
@@ -296,16 +312,16 @@ TEST(HeightField, SaysWhatIsWrongWithItsImage) {
     const std::string err = said(obstacle);
     EXPECT_NE(err.find(text), std::string::npos) << text << ": " << err;
   };
-  write_image(c / "road.png", 2, {0, 100, 200, 255}, PNG_FORMAT_GRAY);
-  says(image + sizes, "its 8 bits tell heights in steps of 0.00392 m");
+  write_image(c / "road.png", 2, {0, 100, 200, 255}, 8);
+  says(image + sizes, "its 8 bits tell heights in steps of 0.0157 m");
   EXPECT_EQ(said(image + "size = [1, 1]\nheights = [0, 0.1]\n").find("bits tell"), std::string::npos);
   says(image + "size = [1, 1]\n", "an image without `heights`");
   says(image + "size = [1, 0]\nheights = [0, 1]\n", "size");
-  write_image(c / "road.png", 2, {0, 100, 200, 255}, PNG_FORMAT_RGB);
+  write_image(c / "road.png", 2, {0, 100, 200, 255}, 8, PNG_COLOR_TYPE_RGB);
   says(image + sizes, "road.png: an image of colours or of holes (heights are levels of grey");
-  write_image(c / "road.png", 1, {0, 1}, PNG_FORMAT_LINEAR_Y);
+  write_image(c / "road.png", 1, {0, 1}, 16);
   says(image + sizes, "1 x 2 pixels: a field has two each way at least");
-  write_image(c / "road.png", 20, std::vector<unsigned>(400, 7), PNG_FORMAT_LINEAR_Y);
+  write_image(c / "road.png", 20, std::vector<unsigned>(400, 7), 16);
   std::filesystem::resize_file(c / "road.png", std::filesystem::file_size(c / "road.png") - 20);
   says(image + sizes, "road.png: this image cannot be read: ");
   std::filesystem::resize_file(c / "road.png", 12);
