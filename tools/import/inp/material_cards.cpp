@@ -292,14 +292,14 @@ DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::ar
   const std::string type = card.word("SECTION").starts_with("RECT") ? "RECT" : card.word("SECTION");
   const auto v = [&](size_t i) { return l.number(i, i == 1 && type == "RECT" ? l.number(0) : 0); };
   extent = {v(0), v(1)};
-  if (type == "RECT") return {"rectangle", {{"width", v(1)}, {"height", v(0)}}};
+  if (type == "RECT") return rectangle_section(v(1), v(0));
   if (type == "CIRC" || type == "PIPE") extent = {2 * v(0), 2 * v(0)};
   if (type == "CIRC" && l.empty(1)) {
     r.skip(
         "*BEAM SECTION, SECTION=CIRC: its one number is the radius, as in Abaqus; in CalculiX it is the diameter, and two are diameters");
-    return {"circle", {{"diameter", 2 * v(0)}}};
+    return circle_section(2 * v(0));
   }
-  if (type == "CIRC" && v(0) == v(1)) return {"circle", {{"diameter", v(0)}}};
+  if (type == "CIRC" && v(0) == v(1)) return circle_section(v(0));
   if (type == "CIRC") {  // the ellipse of CalculiX
     const double p = v(0) / 2, q = v(1) / 2, pi = std::numbers::pi;
     extent = {v(0), v(1)};
@@ -307,13 +307,13 @@ DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::ar
     s.shear = {0.89, 0.89};  // of a circle
     return s;
   }
-  if (type == "PIPE") return {"tube", {{"diameter", 2 * v(0)}, {"thickness", v(1)}}};
+  if (type == "PIPE") return tube_section(2 * v(0), v(1));
   const bool equal = v(2) == v(3) && v(3) == v(4) && v(4) == v(5);
-  if (type == "BOX" && equal) return {"box", {{"width", v(1)}, {"height", v(0)}, {"thickness", v(2)}}};
+  if (type == "BOX" && equal) return box_section(v(1), v(0), v(2));
   along_n2 = type == "I";
   if (along_n2 && v(2) == v(3) && v(4) == v(5)) {
     above = v(1) / 2 - v(0);
-    return {"I", {{"width", v(2)}, {"height", v(1)}, {"flange", v(4)}, {"web", v(6)}}};
+    return I_section(v(2), v(1), v(4), v(6));
   }
   if (along_n2) {  // origin from below, height, widths below and above, their thicknesses, web; a flange of no width makes a T
     const double h = v(1), below = v(2) > 0 ? v(4) : 0, top = v(3) > 0 ? v(5) : 0;
