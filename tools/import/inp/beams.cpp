@@ -51,13 +51,7 @@ void beams_as_cells(InpDeck& d) {
   for (const auto& [id, b] : d.beams) {
     if (b.nodes.size() != 2)
       throw Error(b.place, fmt::format("{} {}: beams of three nodes are no cells of rigid regions", b.type, id), "B31");
-    d.cell[id] = static_cast<std::int64_t>(d.shape.size());
-    d.shape.push_back(static_cast<std::uint8_t>(Shape::bar2));
-    d.cell_id.push_back(id);
-    d.cell_nodes.insert(d.cell_nodes.end(), b.nodes.begin(), b.nodes.end());
-    d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
-    d.cell_line.push_back(b.line);
-    d.cell_file.push_back(b.file);
+    d.add_cell(id, Shape::bar2, b.nodes, b.file, b.line);
     d.beam_cells.insert(id);
   }
   d.beams.clear();

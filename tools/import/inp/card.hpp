@@ -60,7 +60,7 @@ DeckMaterial& material_of(InpReading& r);
 DeckMaterial& material_of(InpReading& r, DataLine& l, const char* expected);
 
 /// Target of a line: a number or the name of a set.
-void target_of(const DataLine& l, std::string& target, std::int64_t& id);
+InpTarget target_of(const DataLine& l);
 
 /// *ELEMENT of a type of points (MASS, SPRINGA, ...); false where it is of cells.
 bool read_points(InpReading& r, const std::string& type);

@@ -13,11 +13,7 @@
 namespace hilo {
 
 std::vector<std::int64_t> numbers_of(const InpDeck& d, const InpTarget& t) {
-  if (t.name.empty()) return {t.id};
-  auto set = d.nset.find(t.name);
-  if (set == d.nset.end()) set = d.nset.find(unqualified(t.name));
-  if (set == d.nset.end()) throw Error(t.place, fmt::format("no node set \"{}\"", t.name), suggest_name(t.name, d.nset));
-  return set->second.members;
+  return t.target.empty() ? std::vector{t.id} : set_of(d.nset, t, "node").members;
 }
 
 namespace {
@@ -29,7 +25,7 @@ struct EquationBody {
   bool of_turns = false;  // a ROT NODE, whose displacements are turns
 };
 EquationBody body_of(const InpDeck& d, std::int64_t node) {
-  const auto is = [&](const InpTarget& t) { return (!t.name.empty() || t.id) && std::ranges::count(numbers_of(d, t), node); };
+  const auto is = [&](const InpTarget& t) { return (!t.target.empty() || t.id) && std::ranges::count(numbers_of(d, t), node); };
   for (const InpTie& t : d.ties) {
     if (t.no_node || t.mean || t.kind == InpTie::Of::weighted || t.left_out) continue;
     if (is(t.turns)) return {true, true, numbers_of(d, t.reference).front(), true};
@@ -78,7 +74,7 @@ bool of_nothing(const InpSum& s) {
 void find_equations(InpDeck& d, Imported& in) {
   std::set<std::int64_t> turned;
   for (const InpTransform& t : d.transformed)
-    for (const auto id : numbers_of(d, {t.target, t.id, t.place})) turned.insert(id);
+    for (const auto id : numbers_of(d, t)) turned.insert(id);
   EqualDisplacements equals;
   std::map<Displacement, std::string> place;
   std::vector<EquationSum> sums;
@@ -107,7 +103,7 @@ void find_equations(InpDeck& d, Imported& in) {
     if (!why.empty()) {
       in.skip("*EQUATION " + why, e.place);
     } else if (e.terms.size() == 1) {
-      d.supports.push_back({first.node.name, first.node.id, first.component, first.component, 0, "", e.place});
+      d.supports.push_back({{first.node.target, first.node.id, e.place}, first.component, first.component});
     } else if (const auto& second = e.terms.back(); e.terms.size() == 2 && !askew && first.component == second.component &&
                                                     std::abs(first.factor + second.factor) <= 1e-9 * std::abs(first.factor)) {
       for (size_t i = 0; i < n; ++i) {

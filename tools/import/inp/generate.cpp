@@ -226,7 +226,7 @@ void copy_element(InpReading& r, std::int64_t from, std::int64_t by, std::int64_
   const auto id = from + by;
   if (id - d.shift < 1 || id - d.shift > last_number(d))
     throw Error(l.place(0), fmt::format("{}: element number {} is not one", r.card.name, id - d.shift));
-  if (d.points.contains(id) || d.beams.contains(id) || d.cell.contains(id))
+  if (d.has_element(id))
     throw Error(l.place(0), fmt::format("{} generates element {}, which is there already", r.card.name, id - d.shift),
                 "number each element once");
   const std::string* file = &*d.files.insert(*l.file).first;
@@ -253,17 +253,9 @@ void copy_element(InpReading& r, std::int64_t from, std::int64_t by, std::int64_
   for (const auto half : {std::int64_t{0}, second_half}) {
     if (half != 0 && !pyramid) break;
     const auto c = static_cast<size_t>(d.cell.at(from + half));
-    const auto shape = d.shape[c];
-    d.cell[id + half] = static_cast<std::int64_t>(d.shape.size());
-    d.shape.push_back(shape);
-    d.cell_id.push_back(id + half);
-    for (auto i = d.offset[c]; i < d.offset[c + 1]; ++i) {
-      const auto node = d.cell_nodes[static_cast<size_t>(i)] + nodes_by;
-      d.cell_nodes.push_back(node);
-    }
-    d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
-    d.cell_line.push_back(l.line);
-    d.cell_file.push_back(file);
+    std::vector<std::int64_t> nodes(d.cell_nodes.begin() + d.offset[c], d.cell_nodes.begin() + d.offset[c + 1]);
+    for (auto& node : nodes) node += nodes_by;
+    d.add_cell(id + half, static_cast<Shape>(d.shape[c]), nodes, file, l.line);
     if (pyramid) d.pyramids.insert(id + half);
   }
 }
@@ -278,8 +270,7 @@ void read_elgen(InpReading& r) {
   DataLine l;
   while (r.lines.next_data(l)) {
     const auto number = l.integer(0), master = number < 0 || number > last_number(d) ? 0 : number + d.shift;
-    if (!d.points.contains(master) && !d.beams.contains(master) && !d.cell.contains(master))
-      throw Error(l.place(0), fmt::format("*ELGEN: no element {} so far", number), "*ELEMENT gives it before");
+    if (!d.has_element(master)) throw Error(l.place(0), fmt::format("*ELGEN: no element {} so far", number), "*ELEMENT gives it before");
     std::array<std::int64_t, 3> n, nodes, numbers;
     std::int64_t all = 1;
     for (size_t k = 0; k < 3; ++k) {
@@ -413,8 +404,7 @@ void read_elcopy(InpReading& r) {
   const DataLine here{card.file, card.line, {{card.name, 1}}};
   count(r, static_cast<std::int64_t>(ids.size()), card.place());
   for (const auto id : ids) {
-    if (!d.points.contains(id) && !d.beams.contains(id) && !d.cell.contains(id))
-      throw Error(card.place("OLDSET"), fmt::format("*ELCOPY: no element {} so far", id - d.shift));
+    if (!d.has_element(id)) throw Error(card.place("OLDSET"), fmt::format("*ELCOPY: no element {} so far", id - d.shift));
     copy_element(r, id, by, nodes_by, here);
     if (set) set->members.push_back(id + by);
   }

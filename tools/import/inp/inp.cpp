@@ -146,7 +146,7 @@ void thin_sections(const InpDeck& d, Imported& in, bool thicken) {
   }
   for (const auto* lines : {&d.supports, &d.forces})
     for (const auto& l : *lines) {
-      const auto rows = l.last > 3 && !nodes.empty() ? inp_nodes(d, l.target, l.id, l.place) : std::vector<std::int64_t>{};
+      const auto rows = l.last > 3 && !nodes.empty() ? inp_nodes(d, l) : std::vector<std::int64_t>{};
       if (const auto n = std::ranges::count_if(rows, [&](std::int64_t a) { return nodes.contains(a); }))
         in.skip("turns and moments of nodes of shells and beams", l.place, n);
     }
@@ -303,7 +303,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   if (in.sheets)
     find_bodies_of_shells(d, in);
   else
-    for (const InpThickness& t : d.thicknesses) in.skip("*NODAL THICKNESS of regions that are rigid", t.node.place);
+    for (const InpThickness& t : d.thicknesses) in.skip("*NODAL THICKNESS of regions that are rigid", t.place);
 
   std::unordered_set<std::int64_t> points;  // elements that are no cells
   for (const auto& [id, p] : d.points) points.insert(id);
@@ -328,7 +328,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     std::vector<Facet> facets;
     bool below = false;  // the faces of shells against their normals
     for (const auto& line : s.lines) {
-      const auto cells = inp_cells(d, line.target, line.id, line.place);
+      const auto cells = inp_cells(d, line);
       if (line.face == 0) {
         const auto free = free_facets(in.mesh, cells);
         facets.insert(facets.end(), free.begin(), free.end());
@@ -366,7 +366,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     if (!s.of_nodes) continue;
     std::vector<std::int64_t> nodes;
     for (const auto& line : s.lines) {
-      const auto more = inp_nodes(d, line.target, line.id, line.place);
+      const auto more = inp_nodes(d, line);
       nodes.insert(nodes.end(), more.begin(), more.end());
     }
     // whole faces of them are what a *TIE or *CONTACT PAIR can speak of

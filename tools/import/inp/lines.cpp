@@ -35,12 +35,9 @@ void cut(std::string_view line, std::vector<DataField>& fields) {
   while (!fields.empty() && fields.back().text.empty()) fields.pop_back();
 }
 
-std::string unquote(std::string_view s) {
-  if (s.size() > 1 && s.front() == '"' && s.back() == '"') s = s.substr(1, s.size() - 2);
-  return std::string(s);
-}
-
 }  // namespace
+
+std::string_view unquote(std::string_view s) { return s.size() > 1 && s.front() == '"' && s.back() == '"' ? s.substr(1, s.size() - 2) : s; }
 
 std::string Card::place() const { return fmt::format("{}:{}", *file, line); }
 const Card::Param* Card::find(const std::string& param) const {
@@ -228,7 +225,7 @@ bool InpLines::next_card(Card& card) {
       const auto value = eq == std::string_view::npos ? std::string_view{} : strip(f.text.substr(eq + 1));
       const int column =
           eq == std::string_view::npos || value.empty() ? f.column : f.column + static_cast<int>(value.data() - f.text.data());
-      card.params[key] = {unquote(value), column};
+      card.params[key] = {std::string(unquote(value)), column};
     }
     if (more && !next_line(line)) break;
     if (more && strip(line).front() == '*') {  // a comma at the end with nothing behind it

@@ -40,6 +40,9 @@ struct Card {
   std::string need(const std::string& param) const;
 };
 
+/// A text without the quotes about it.
+std::string_view unquote(std::string_view text);
+
 /// Reads a deck card by card, line by line; *INCLUDE is followed in place.  Plain or gzip text.
 class InpLines {
  public:

@@ -10,17 +10,11 @@
 
 namespace hilo {
 
-void target_of(const DataLine& l, std::string& target, std::int64_t& id) {
-  id = 0;
-  target.clear();
-  if (l.is_integer(0)) {
-    id = l.integer(0);
-    return;
-  }
-  std::string_view text = l.text(0);
-  if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
-  target = upper(text);
-  if (target.empty()) throw Error(l.place(0), "expected a number or the name of a set");
+InpTarget target_of(const DataLine& l) {
+  if (l.is_integer(0)) return {"", l.integer(0), l.place()};
+  InpTarget t{upper(unquote(l.text(0))), 0, l.place()};
+  if (t.target.empty()) throw Error(l.place(0), "expected a number or the name of a set");
+  return t;
 }
 
 namespace {
@@ -62,10 +56,8 @@ void read_supports(InpReading& r) {
   const std::string amplitude = card.word("AMPLITUDE");
   DataLine l;
   while (r.lines.next_data(l)) {
-    InpNodal b;
+    InpNodal b{target_of(l)};
     b.amplitude = amplitude, b.step = r.step, b.rate = rate;
-    b.place = l.place();
-    target_of(l, b.target, b.id);
     if (!l.is_integer(1)) {
       const auto pairs = named_support(upper(l.text(1)));
       if (pairs.empty()) throw Error(l.place(1), fmt::format("*BOUNDARY: expected a degree of freedom, found \"{}\"", l.text(1)));
@@ -92,10 +84,8 @@ void read_nodal(InpReading& r, std::vector<InpNodal>& into) {
   const Card& card = r.card;
   DataLine l;
   while (r.lines.next_data(l)) {
-    InpNodal f;
+    InpNodal f{target_of(l)};
     f.amplitude = card.word("AMPLITUDE"), f.step = r.step;
-    f.place = l.place();
-    target_of(l, f.target, f.id);
     f.first = f.last = static_cast<int>(l.integer(1));
     f.value = l.number(2);
     if (f.first < 1 || f.first > 6)
@@ -127,12 +117,12 @@ void read_distributed(InpReading& r) {
   DataLine l;
   while (r.lines.next_data(l)) {
     const std::string label = upper(l.text(1));
-    InpDistributed p{"", 0, 0, l.number(2), Vec3::Zero(), card.word("AMPLITUDE"), l.place(), r.step};
+    const double value = l.number(2);
     if (l.text(0).empty()) {  // Abaqus: no target means the whole model
-      in.skip(fmt::format("{} without a set", card.name), p.place);
+      in.skip(fmt::format("{} without a set", card.name), l.place());
       continue;
     }
-    target_of(l, p.target, p.id);
+    InpDistributed p{target_of(l), 0, value, Vec3::Zero(), card.word("AMPLITUDE"), r.step};
     if (surface && label == "P")
       p.face = 0;
     else if (!surface && label == "GRAV") {
@@ -162,7 +152,7 @@ void read_distributed(InpReading& r) {
 }
 
 void read_transform(InpReading& r) {
-  InpTransform t{upper(r.card.need("NSET")), 0, r.card.place()};
+  InpTransform t{{upper(r.card.need("NSET")), 0, r.card.place()}};
   const std::string type = r.card.has("TYPE") ? r.card.word("TYPE") : "R";
   t.cylindrical = type == "C", t.is_read = type == "R" || type == "C";
   DataLine l;

@@ -276,10 +276,7 @@ void read_shell_section(InpReading& r) {
 void read_nodal_thickness(InpReading& r) {
   DataLine l;
   while (r.lines.next_data(l)) {
-    InpThickness t;
-    t.node.place = l.place();
-    target_of(l, t.node.name, t.node.id);
-    t.value = l.number(1);
+    const InpThickness t{target_of(l), l.number(1)};
     if (!(t.value > 0)) throw Error(l.place(1), fmt::format("{}: a thickness of {:g}", r.card.name, t.value));
     r.deck.thicknesses.push_back(t);
   }

@@ -136,29 +136,19 @@ void read_elements(InpReading& r) {
       in.skip(fmt::format("*ELEMENT, TYPE={}: numbers after its {} nodes", upper(card.value("TYPE")), n), l.place());
       row.resize(n + 1);
     }
-    if (d.points.contains(row[0]) || d.beams.contains(row[0]) || d.cell.contains(row[0]))
-      throw Error(place, fmt::format("element {} is given twice", row[0]), "number each element once");
+    if (d.has_element(row[0])) throw Error(place, fmt::format("element {} is given twice", row[0]), "number each element once");
     if (set) set->members.push_back(row[0]);
     if (of_beam) {
       d.beams[row[0]] = {type, row[0], {row.begin() + 1, row.end()}, place, file, line};
       continue;
     }
-    const auto add = [&](std::int64_t id, std::span<const std::int64_t> nodes) {
-      d.cell[id] = static_cast<std::int64_t>(d.shape.size());
-      d.shape.push_back(static_cast<std::uint8_t>(shape));
-      d.cell_id.push_back(id);
-      d.cell_nodes.insert(d.cell_nodes.end(), nodes.begin(), nodes.end());
-      d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
-      d.cell_line.push_back(line);
-      d.cell_file.push_back(file);
-    };
     const auto nodes = std::span<const std::int64_t>(row).subspan(1);
     if (!pyramid) {
-      add(row[0], nodes);
+      d.add_cell(row[0], shape, nodes, file, line);
       continue;
     }
     const auto halves = halves_of_pyramid(nodes);
-    add(row[0], halves[0]), add(row[0] + second_half, halves[1]);
+    d.add_cell(row[0], shape, halves[0], file, line), d.add_cell(row[0] + second_half, shape, halves[1], file, line);
     d.pyramids.insert({row[0], row[0] + second_half});
   }
 }
@@ -212,8 +202,7 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
         add.push_back(l.integer(i) + shift);
         continue;
       }
-      std::string_view text = l.text(i);
-      if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
+      const std::string_view text = unquote(l.text(i));
       if (const DataLine own{l.file, l.line, {{text.substr(text.rfind('.') + 1), l.fields[i].column}}};
           text.find('.') != text.npos && own.is_integer(0)) {  // "PART-1-1.17"
         const auto qualified = d.shift_of.find(upper(text.substr(0, text.rfind('.'))));
@@ -243,14 +232,11 @@ void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   }
   DataLine l;
   while (lines.next_data(l)) {
-    InpSurface::Line one{"", 0, 0, l.place()};
+    InpSurface::Line one{{"", 0, l.place()}};
     if (l.is_integer(0))
       one.id = l.integer(0) + (s.of_nodes ? d.node_shift() : d.shift);
-    else {
-      std::string_view text = l.text(0);
-      if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
-      one.target = upper(d.prefix) + upper(text);
-    }
+    else
+      one.target = upper(d.prefix) + upper(unquote(l.text(0)));
     const std::string face = upper(l.text(1));
     if (!s.of_nodes && !face.empty()) {
       if (face == "SPOS" || face == "SNEG") {
@@ -270,6 +256,16 @@ void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
 }
 
 }  // namespace
+
+void InpDeck::add_cell(std::int64_t id, Shape of, std::span<const std::int64_t> nodes, const std::string* at_file, int at_line) {
+  cell[id] = static_cast<std::int64_t>(shape.size());
+  shape.push_back(static_cast<std::uint8_t>(of));
+  cell_id.push_back(id);
+  cell_nodes.insert(cell_nodes.end(), nodes.begin(), nodes.end());
+  offset.push_back(static_cast<std::int64_t>(cell_nodes.size()));
+  cell_line.push_back(at_line);
+  cell_file.push_back(at_file);
+}
 
 InpSet& set_of_cells(const std::string& name, InpDeck& d) {
   make_room(name, false, d);

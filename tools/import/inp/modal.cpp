@@ -47,10 +47,6 @@ void read_modal_damping(InpReading& r) {
 
 /// A line of the second step on a component takes the place of that of the first; false where both speak of a node by different names.
 bool replace_supports(InpDeck& d) {
-  const auto nodes = [&](const InpNodal& l) {
-    const auto set = d.nset.find(l.target);
-    return l.target.empty() || set == d.nset.end() ? std::vector{l.id} : set->second.members;
-  };
   std::vector<InpNodal> lines;
   for (const InpNodal& l : d.supports) {
     std::vector<InpNodal> left{l};
@@ -63,7 +59,7 @@ bool replace_supports(InpDeck& d) {
           continue;
         }
         if (part.target != later.target || (part.target.empty() && part.id != later.id)) {
-          auto one = nodes(part), other = nodes(later);
+          auto one = numbers_in(d.nset, part), other = numbers_in(d.nset, later);
           std::ranges::sort(one), std::ranges::sort(other);
           std::vector<std::int64_t> both;
           std::ranges::set_intersection(one, other, std::back_inserter(both));

@@ -15,10 +15,7 @@ InpScene::InpScene(const InpDeck& d, Imported& in, SetNames& names, const std::m
                    const std::map<std::string, std::string>& surface, const ImportOptions& o)
     : d_(d), in_(in), names_(names), node_set_(node_set), surface_(surface), o_(o), turned_(turned_nodes(d, in.mesh)) {
   for (const InpTransform& t : d.transformed)
-    if (const auto set = d.nset.find(t.target); set != d.nset.end())
-      own_axes_.insert(set->second.members.begin(), set->second.members.end());
-    else if (t.target.empty())
-      own_axes_.insert(t.id);
+    for (const auto id : numbers_in(d.nset, t)) own_axes_.insert(id);
   for (const auto& [turns, reference] : d.turns_of)
     if (own_axes_.contains(turns)) own_axes_.insert(reference);
   for (const auto& [id, b] : d.beams) of_beams_.insert(b.nodes.begin(), b.nodes.end());

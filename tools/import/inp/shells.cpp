@@ -16,13 +16,13 @@ void find_bodies_of_shells(InpDeck& d, Imported& in) {
     d.bodies.try_emplace(in.mesh.node_id[static_cast<size_t>(a)], InpBody{in.mesh.X[static_cast<size_t>(a)], place, {}});
   };
   for (const InpThickness& t : d.thicknesses)
-    for (const auto a : inp_nodes(d, t.node.name, t.node.id, t.node.place))
+    for (const auto a : inp_nodes(d, t))
       if (in.sheets->at(a).empty())
-        in.skip("*NODAL THICKNESS of nodes of no shell", t.node.place);
+        in.skip("*NODAL THICKNESS of nodes of no shell", t.place);
       else
         in.thickness_at[a] = t.value;
   const auto of_shells = [&](const InpNodal& l) {
-    auto rows = inp_nodes(d, l.target, l.id, l.place);
+    auto rows = inp_nodes(d, l);
     std::erase_if(rows, [&](std::int64_t a) { return in.sheets->at(a).empty(); });
     return rows;
   };

@@ -42,11 +42,8 @@ class Joiner {
   }
 
   InpPlan plan() {
-    InpPlan p;
-    const auto& last = d_.steps[n_ - 1];
-    p.procedure = last.procedure, p.n_modes = last.n_modes, p.alpha = last.alpha, p.beta = last.beta, p.ratio = last.ratio,
-    p.modal = last.modal, p.from_equilibrium = first_ > 0;
-    p.direct = true;
+    InpPlan p{d_.steps[n_ - 1]};
+    p.increment = p.end = 0, p.direct = true, p.from_equilibrium = first_ > 0;
     for (size_t k = first_; k < n_; ++k) {
       const InpStep& s = d_.steps[k];
       p.end += s.period();
@@ -64,18 +61,12 @@ class Joiner {
  private:
   static size_t index(int step) { return static_cast<size_t>(std::max(step, 1) - 1); }
 
-  std::vector<std::int64_t> nodes_of(const std::string& target, std::int64_t id) const {
-    if (target.empty()) return {id};
-    const auto set = d_.nset.find(target);
-    return set == d_.nset.end() ? std::vector<std::int64_t>{} : set->second.members;
-  }
-
   /// Later lines may speak of the nodes of other lines under another name: then each node has lines of its own.
   std::vector<InpNodal> apart(const std::vector<InpNodal>& lines) const {
     std::map<std::pair<std::int64_t, int>, std::set<std::pair<std::string, std::int64_t>>> names;  // of node and component
     bool overlap = false;
     for (const InpNodal& l : lines)
-      for (const auto node : nodes_of(l.target, l.id))
+      for (const auto node : numbers_in(d_.nset, l))
         for (int k = l.first; k <= l.last; ++k) {
           auto& said = names[{node, k}];
           said.insert({l.target, l.target.empty() ? l.id : 0});
@@ -84,7 +75,7 @@ class Joiner {
     if (!overlap) return lines;
     std::vector<InpNodal> out;
     for (const InpNodal& l : lines)
-      for (const auto node : nodes_of(l.target, l.id)) out.push_back(l), out.back().target.clear(), out.back().id = node;
+      for (const auto node : numbers_in(d_.nset, l)) out.push_back(l), out.back().target.clear(), out.back().id = node;
     return out;
   }
 
@@ -262,8 +253,7 @@ void join_steps(InpDeck& d, Imported& in) {
   size_t n = longest(d, why);
   for (;; --n) {
     if (n == 1) {
-      const InpStep& s = d.steps[0];
-      d.plan = {s.procedure, s.increment, s.end, s.direct, s.n_modes, s.alpha, s.beta, s.ratio, s.sweep, s.place, s.modal};
+      d.plan = {d.steps[0]};
       std::erase_if(d.supports, [](const InpNodal& l) { return l.step > 1; });
       std::erase_if(d.forces, [](const InpNodal& l) { return l.step > 1; });
       std::erase_if(d.distributed, [](const InpDistributed& l) { return l.step > 1; });

@@ -17,9 +17,15 @@ InpTarget target_in(const InpReading& r, const std::string& key) {
   const Card& card = r.card;
   const std::string value = card.need(key);
   InpTarget t{upper(value), 0, card.place(key)};
-  if (!t.name.empty() && t.name.size() < 18 && t.name.find_first_not_of("0123456789") == std::string::npos)
-    t.id = std::stoll(t.name) + r.deck.node_shift(), t.name.clear();
+  if (!t.target.empty() && t.target.size() < 18 && t.target.find_first_not_of("0123456789") == std::string::npos)
+    t.id = std::stoll(t.target) + r.deck.node_shift(), t.target.clear();
   return t;
+}
+
+/// A node or set of a field.
+InpTarget target_of_field(const InpReading& r, const DataLine& l, size_t i) {
+  const bool number = l.is_integer(i);
+  return {number ? "" : upper(r.deck.prefix) + upper(l.text(i)), number ? l.integer(i) + r.deck.node_shift() : 0, l.place(i)};
 }
 
 /// Kinematic or distributing, as the card behind it says.
@@ -79,8 +85,7 @@ void read_distributing(InpReading& r) {
   t.reference = {upper(r.card.need("ELSET")), 0, r.card.place("ELSET")};
   DataLine l;
   while (r.lines.next_data(l)) {
-    InpTarget of{l.is_integer(0) ? "" : upper(r.deck.prefix) + upper(l.text(0)), l.is_integer(0) ? l.integer(0) + r.deck.node_shift() : 0,
-                 l.place(0)};
+    const InpTarget of = target_of_field(r, l, 0);
     const double w = l.number(1, 1);
     if (!(w > 0)) throw Error(l.place(1), fmt::format("{}: a weight of {:g}", t.name, w), "one above zero");
     t.weights.emplace_back(of, w);
@@ -97,12 +102,6 @@ bool tell_odd_rows(InpReading& r) {
   r.skip(r.step > 0 ? what + " in a step" : what);
   if (r.step > 0) r.deck.steps.back().not_read = what;
   return true;
-}
-
-/// A node or set of a field.
-InpTarget target_of_field(const InpReading& r, const DataLine& l, size_t i) {
-  const bool number = l.is_integer(i);
-  return {number ? "" : upper(r.deck.prefix) + upper(l.text(i)), number ? l.integer(i) + r.deck.node_shift() : 0, l.place(i)};
 }
 
 /// How many terms; and then node or set, component and factor of each, on as many lines as they need.

@@ -21,13 +21,10 @@ constexpr size_t most_rows = 2000;  // nodes of a coupling of some components: j
 
 /// The node that a target names.
 std::int64_t node_of(const InpDeck& d, const InpTarget& t) {
-  if (t.name.empty()) return t.id;
-  auto set = d.nset.find(t.name);
-  if (set == d.nset.end()) set = d.nset.find(unqualified(t.name));
-  if (set == d.nset.end()) throw Error(t.place, fmt::format("no node set \"{}\"", t.name), suggest_name(t.name, d.nset));
-  std::set<std::int64_t> ids(set->second.members.begin(), set->second.members.end());
-  if (ids.size() != 1) throw Error(t.place, fmt::format("node set \"{}\" holds {} nodes, one is due", t.name, ids.size()));
-  return *ids.begin();
+  auto ids = numbers_of(d, t);
+  sort_unique(ids);
+  if (ids.size() != 1) throw Error(t.place, fmt::format("node set \"{}\" holds {} nodes, one is due", t.target, ids.size()));
+  return ids.front();
 }
 
 Vec3 place_of(const InpDeck& d, std::int64_t id, const std::string& place) {
@@ -39,15 +36,15 @@ Vec3 place_of(const InpDeck& d, std::int64_t id, const std::string& place) {
 /// Numbers of the nodes of its set, or of its surface of nodes, those of no cell too.
 std::vector<std::int64_t> ids_of(const InpDeck& d, const InpTie& t) {
   std::vector<std::int64_t> ids;
-  const auto add = [&](const std::string& set) {
-    if (const auto found = d.nset.find(set); found != d.nset.end())
-      ids.insert(ids.end(), found->second.members.begin(), found->second.members.end());
+  const auto add = [&](const InpTarget& of) {
+    const auto more = numbers_in(d.nset, of);
+    ids.insert(ids.end(), more.begin(), more.end());
   };
-  if (t.kind == InpTie::Of::nodes) add(t.of);
+  if (t.kind == InpTie::Of::nodes) add({t.of});
   if (t.kind == InpTie::Of::surface)
     for (const InpSurface& s : d.surfaces)
       if (s.of_nodes && upper(s.name) == t.of)
-        for (const auto& l : s.lines) l.target.empty() ? ids.push_back(l.id) : add(l.target);
+        for (const auto& l : s.lines) add(l);
   sort_unique(ids);
   return ids;
 }
@@ -60,12 +57,12 @@ std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const 
     for (const auto a : nodes) w[a] = 1;
   };
   if (t.kind == InpTie::Of::nodes) {
-    add(inp_nodes(d, t.of, 0, t.place));
+    add(inp_nodes(d, {t.of, 0, t.place}));
   } else if (t.kind == InpTie::Of::weighted) {
     for (const auto& [of, weight] : t.weights)
-      for (const auto a : inp_nodes(d, of.name, of.id, of.place)) w[a] += weight;
+      for (const auto a : inp_nodes(d, of)) w[a] += weight;
   } else if (t.kind == InpTie::Of::cells) {
-    for (const auto c : inp_cells(d, t.of, 0, t.place)) add({m.cell(c).begin(), m.cell(c).end()});
+    for (const auto c : inp_cells(d, {t.of, 0, t.place})) add({m.cell(c).begin(), m.cell(c).end()});
   } else if (const auto s = surface.find(t.of); s != surface.end() && m.facet_sets.contains(s->second)) {
     for (const Facet& f : m.facet_sets.at(s->second)) {
       const auto nodes = m.facet_nodes(f);
@@ -79,7 +76,7 @@ std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const 
     for (const InpSurface& s2 : d.surfaces)
       if (s2.of_nodes && upper(s2.name) == t.of) {
         found = true;
-        for (const auto& l : s2.lines) add(inp_nodes(d, l.target, l.id, l.place));
+        for (const auto& l : s2.lines) add(inp_nodes(d, l));
       }
     if (!found) throw Error(t.place, fmt::format("{}: no surface \"{}\"", t.name, t.of));
   }
@@ -88,16 +85,14 @@ std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const 
 
 /// The node of the one DCOUP3D of its element set.
 std::int64_t node_of_coupling(const InpDeck& d, const InpTie& t) {
-  const auto set = d.elset.find(t.reference.name);
-  if (set == d.elset.end())
-    throw Error(t.reference.place, fmt::format("no element set \"{}\"", t.reference.name), suggest_name(t.reference.name, d.elset));
+  const InpSet& set = set_of(d.elset, t.reference, "element", false);
   const InpPoint* one = nullptr;
-  for (const auto id : set->second.members)
+  for (const auto id : set.members)
     if (const auto p = d.points.find(id); p != d.points.end() && p->second.type == "DCOUP3D") {
-      if (one) throw Error(t.place, fmt::format("{}: element set \"{}\" has several DCOUP3D", t.name, set->second.name), "one for each");
+      if (one) throw Error(t.place, fmt::format("{}: element set \"{}\" has several DCOUP3D", t.name, set.name), "one for each");
       one = &p->second;
     }
-  if (!one) throw Error(t.place, fmt::format("{}: element set \"{}\" has no DCOUP3D", t.name, set->second.name));
+  if (!one) throw Error(t.place, fmt::format("{}: element set \"{}\" has no DCOUP3D", t.name, set.name));
   return one->nodes[0];
 }
 
@@ -185,7 +180,7 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
     for (const auto& [a, weight] : w) rows.push_back(a);
     if (!rows.empty()) body.carries.push_back({t.name, t.place, rows, t.components & 7});
     for (const auto id : beams) body.bodies.emplace_back(id, t.components);
-    if (!t.turns.name.empty() || t.turns.id) d.turns_of[node_of(d, t.turns)] = ref;
+    if (!t.turns.target.empty() || t.turns.id) d.turns_of[node_of(d, t.turns)] = ref;
   }
 }
 
@@ -194,13 +189,8 @@ bool is_tied(const InpDeck& d, std::int64_t id) {
 }
 
 void tied_lines(const InpDeck& d, const InpNodal& l, const std::function<void(std::int64_t, int, int)>& use) {
-  std::vector<std::int64_t> ids{l.id};
-  if (!l.target.empty()) {
-    const auto set = d.nset.find(l.target);
-    if (set == d.nset.end()) return;
-    ids = set->second.members;
-    sort_unique(ids);
-  }
+  auto ids = numbers_in(d.nset, l);
+  sort_unique(ids);
   for (const auto id : ids) {
     if (const auto turns = d.turns_of.find(id); turns != d.turns_of.end())
       use(turns->second, l.first + 3, std::min(l.last, 3) + 3);  // 1 to 3 of a ROT NODE are turns
@@ -245,7 +235,7 @@ void write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOpt
   };
   std::set<std::int64_t> own_axes;
   for (const InpTransform& t : d.transformed)
-    for (const auto id : numbers_of(d, {t.target, t.id, t.place})) own_axes.insert(id);
+    for (const auto id : numbers_of(d, t)) own_axes.insert(id);
   std::map<std::int64_t, double> mass;
   SceneWriter springs;
   const double size = size_of(d, in.mesh);
