@@ -148,7 +148,7 @@ void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine
   const auto tell_turn = [&](std::int64_t grid, const std::string& place) {
     const auto a = deck.row.find(grid);
     if (a == deck.row.end() || !of_thin.contains(a->second)) return;
-    if (!in.sheets || in.sheets->at(a->second).empty())  // a grid of shells that become pairs is a body where it has to turn
+    if (sheets_at(in, a->second).empty())  // a grid of shells that become pairs is a body where it has to turn
       in.skip("turns and moments of grids of shells and beams", place);
   };
   for (const auto& [sid, lines] : deck.supports)

@@ -122,10 +122,7 @@ class BdfScene {
   std::map<std::int64_t, Held> held_;  // by row: components that a grid is held in, and at which values
   std::set<std::int64_t> of_solids_;   // rows, beside shells that become pairs
   /// The sheets that a grid of shells is in, where these become pairs of nodes.
-  const std::vector<Sheets::Part>& sheets(std::int64_t row) const {
-    static const std::vector<Sheets::Part> none;
-    return in_.sheets ? in_.sheets->at(row) : none;
-  }
+  const std::vector<Sheets::Part>& sheets(std::int64_t row) const { return sheets_at(in_, row); }
   bool is_of_shell(std::int64_t row) const { return !sheets(row).empty(); }
   std::map<std::int64_t, std::string> on_beam_;  // row of a grid of beams -> place
   struct MadeBeam {

@@ -274,12 +274,8 @@ void BdfScene::nodal_loads() {
     scene_.add_unique({"load", "force"}, set, group.second, {{"on", set}, {"force", v * si("N")}, {"per_node", true}});
   }
   for (auto& [a, m] : moment_) {
-    if (is_of_shell(a) && !on_beam_.contains(a) && is_flat(sheets(a))) {
-      const Vec3& n = sheets(a).front().normal;
-      if (std::abs(m.first.dot(n)) > 1e-6 * m.first.norm())
-        in_.skip("MOMENT about the normal of a shell, which does not resist it", m.second);
-      m.first -= n * n.dot(m.first);
-    }
+    if (is_of_shell(a) && !on_beam_.contains(a) && is_flat(sheets(a)) && drop_drilling(sheets(a), m.first))
+      in_.skip("MOMENT about the normal of a shell, which does not resist it", m.second);
     if (m.first.norm() > 0)
       scene_.add_unique({"load", "torque"}, end_name(a) + "_torque", m.second, {{"on", end_name(a)}, {"torque", m.first * si("N m")}});
   }

@@ -67,5 +67,11 @@ bool read_points(InpReading& r, const std::string& type);
 
 /// The first parameter of a card that is not among those known, as "*CLOAD, SECTOR"; "" when all are.
 std::string unknown_param(const Card& card, std::initializer_list<const char*> known);
+/// An Error where there is one.
+void require_known(const Card& card, std::initializer_list<const char*> known, const char* hint);
+/// The card's first data line; Error with what is expected there where it has none.
+void first_line(InpReading& r, DataLine& l, const char* expected);
+/// The step at hand; a procedure may stand without one.
+InpStep& step_of(InpReading& r);
 
 }  // namespace hilo

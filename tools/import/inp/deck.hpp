@@ -352,6 +352,12 @@ void write_inp_scene(const InpDeck& deck, Imported& in, SetNames& names, const s
 void beams_as_cells(InpDeck& deck);
 /// Of a beam that begins at `from`: towards a node, or as its section says.
 Vec3 direction_1(const InpDeck& deck, const Mesh& mesh, const InpSection& section, std::int64_t element, const Vec3& from);
+/// The place of a node, of a cell or not; null where there is none.
+const Vec3* point_of(const InpDeck& deck, const Mesh& mesh, std::int64_t node);
+/// Whether a node is of shells that become pairs of nodes.
+bool is_of_pairs(const InpDeck& deck, const Imported& in, std::int64_t node);
+/// A name that no set and no surface of the deck has: the wish, or with _body behind it.
+std::string free_body_name(const InpDeck& deck, std::string wish);
 /// Nodes of beams are bodies.
 void find_beams(InpDeck& deck, Imported& in);
 /// Nodes of shells that pairs of nodes cannot stand for are bodies.

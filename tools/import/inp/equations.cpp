@@ -39,12 +39,8 @@ EquationBody body_of(const InpDeck& d, std::int64_t node) {
 
 /// Why a displacement cannot be one of an equation, or "".
 std::string why_not(const InpDeck& d, const Imported& in, std::int64_t node, int component, const std::set<std::int64_t>& turned) {
-  const auto of_shells = [&](std::int64_t id) {
-    const auto a = d.node.find(id);
-    return a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty();
-  };
   if (component < 1 || component > 6) return "of temperatures or potentials";
-  if (turned.contains(node) && (!d.node.contains(node) || (body_of(d, node).is && !of_shells(node))))
+  if (turned.contains(node) && (!d.node.contains(node) || (body_of(d, node).is && !is_of_pairs(d, in, node))))
     return "in axes of *TRANSFORM, of a node of no solid";
   if (!d.node.contains(node) && !d.loose.contains(node) && !body_of(d, node).is) return "of a node that does not exist";
   for (const InpTie& t : d.ties)
@@ -52,7 +48,7 @@ std::string why_not(const InpDeck& d, const Imported& in, std::int64_t node, int
       return "of the node of a distributing coupling";
   for (const auto& [id, p] : d.points)
     if (p.type == "DCOUP3D" && std::ranges::count(p.nodes, node)) return "of the node of a distributing coupling";
-  if (component > 3 && of_shells(node)) return "of turns of nodes of shells";
+  if (component > 3 && is_of_pairs(d, in, node)) return "of turns of nodes of shells";
   if (component > 3 && !body_of(d, node).turns) return "of turns of a node that has none";
   return "";
 }
@@ -79,10 +75,7 @@ void find_equations(InpDeck& d, Imported& in) {
   std::map<Displacement, std::string> place;
   std::vector<EquationSum> sums;
   // a node of shells that is a body stands in the mesh all the same
-  const auto is_body = [&](std::int64_t node) {
-    const auto a = d.node.find(node);
-    return body_of(d, node).is && !(a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty());
-  };
+  const auto is_body = [&](std::int64_t node) { return body_of(d, node).is && !is_of_pairs(d, in, node); };
   for (const InpEquation& e : d.equations) {
     std::string why;
     std::vector<std::vector<std::int64_t>> nodes;
@@ -128,7 +121,7 @@ void find_equations(InpDeck& d, Imported& in) {
     if (fresh) {
       InpSlide& s = d.slides.emplace_back();
       s.component = x.second, s.place = place[x];
-      s.X = d.node.contains(x.first) ? in.mesh.X[d.node.at(x.first)] : d.loose.at(x.first);
+      s.X = *point_of(d, in.mesh, x.first);
     }
     d.slide_of[x] = at->second;
     if (const auto a = d.node.find(x.first); a != d.node.end()) d.slides[at->second].rows.push_back(a->second);

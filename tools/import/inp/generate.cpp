@@ -123,8 +123,7 @@ class Line {
 void read_ngen(InpReading& r) {
   const Card& card = r.card;
   InpDeck& d = r.deck;
-  if (const auto odd = unknown_param(card, {"NSET", "LINE", "SYSTEM"}); !odd.empty())
-    throw Error(card.place() + ":1", odd + " is not read", "write the nodes out");
+  require_known(card, {"NSET", "LINE", "SYSTEM"}, "write the nodes out");
   const std::string line = card.word("LINE"), system = card.word("SYSTEM");
   if (!line.empty() && line != "C" && line != "P") throw Error(card.place("LINE"), "*NGEN, LINE=" + line, "C, an arc, or P, a parabola");
   if (!system.empty() && system != "RC" && system != "C")
@@ -195,8 +194,7 @@ std::vector<double> shares(const InpReading& r, std::int64_t n) {
 void read_nfill(InpReading& r) {
   const Card& card = r.card;
   InpDeck& d = r.deck;
-  if (const auto odd = unknown_param(card, {"NSET", "BIAS", "TWOSTEP"}); !odd.empty())
-    throw Error(card.place() + ":1", odd + " is not read", "write the nodes out");
+  require_known(card, {"NSET", "BIAS", "TWOSTEP"}, "write the nodes out");
   InpSet* set = card.has("NSET") ? &set_of_nodes(card.need("NSET"), d) : nullptr;
   DataLine l;
   while (r.lines.next_data(l)) {
@@ -264,8 +262,7 @@ void copy_element(InpReading& r, std::int64_t from, std::int64_t by, std::int64_
 void read_elgen(InpReading& r) {
   const Card& card = r.card;
   InpDeck& d = r.deck;
-  if (const auto odd = unknown_param(card, {"ELSET", "ALLNODES"}); !odd.empty())
-    throw Error(card.place() + ":1", odd + " is not read", "write the elements out");
+  require_known(card, {"ELSET", "ALLNODES"}, "write the elements out");
   InpSet* set = card.has("ELSET") ? &set_of_cells(card.need("ELSET"), d) : nullptr;
   DataLine l;
   while (r.lines.next_data(l)) {
@@ -300,8 +297,7 @@ void read_elgen(InpReading& r) {
 /// A whole number of a parameter.
 std::int64_t number_of(const Card& card, const char* key, std::int64_t fallback) {
   if (!card.has(key)) return fallback;
-  const std::string text = card.need(key);
-  const auto n = DataLine{card.file, card.line, {{text, card.params.at(key).column}}}.integer(0);
+  const auto n = card.integer(key);
   if (n < -instance_numbers || n > instance_numbers) throw Error(card.place(key), fmt::format("{}: {}", card.name, n), too_many);
   return n;
 }
@@ -369,8 +365,7 @@ const InpSet& set_to_copy(const InpReading& r, const std::map<std::string, InpSe
 void read_ncopy(InpReading& r) {
   const Card card = r.card;
   InpDeck& d = r.deck;
-  if (const auto odd = unknown_param(card, {"OLDSET", "CHANGENUMBER", "NEWSET", "SHIFT", "REFLECT", "MULTIPLE"}); !odd.empty())
-    throw Error(card.place() + ":1", odd + " is not read", "write the nodes out");
+  require_known(card, {"OLDSET", "CHANGENUMBER", "NEWSET", "SHIFT", "REFLECT", "MULTIPLE"}, "write the nodes out");
   card.need("CHANGENUMBER");
   if (card.has("SHIFT") == card.has("REFLECT")) throw Error(card.place() + ":1", "*NCOPY: SHIFT or REFLECT is due");
   const auto by = number_of(card, "CHANGENUMBER", 0), times = number_of(card, "MULTIPLE", 1);
@@ -395,8 +390,7 @@ void read_ncopy(InpReading& r) {
 void read_elcopy(InpReading& r) {
   const Card& card = r.card;
   InpDeck& d = r.deck;
-  if (const auto odd = unknown_param(card, {"OLDSET", "ELEMENTSHIFT", "SHIFTNODES", "NEWSET"}); !odd.empty())
-    throw Error(card.place() + ":1", odd + " is not read", "write the elements out");
+  require_known(card, {"OLDSET", "ELEMENTSHIFT", "SHIFTNODES", "NEWSET"}, "write the elements out");
   card.need("ELEMENTSHIFT"), card.need("SHIFTNODES");
   const auto by = number_of(card, "ELEMENTSHIFT", 0), nodes_by = number_of(card, "SHIFTNODES", 0);
   const std::vector<std::int64_t> ids = set_to_copy(r, d.elset).members;

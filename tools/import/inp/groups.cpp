@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "import/inp/ties.hpp"
+#include "import/sheets.hpp"
 
 namespace hilo {
 namespace {
@@ -252,6 +253,27 @@ std::vector<std::int64_t> numbers_in(const std::map<std::string, InpSet>& sets, 
   if (t.target.empty()) return {t.id};
   const auto set = sets.find(t.target);
   return set == sets.end() ? Rows{} : set->second.members;
+}
+
+const Vec3* point_of(const InpDeck& d, const Mesh& mesh, std::int64_t node) {
+  if (const auto a = d.node.find(node); a != d.node.end()) return &mesh.X[static_cast<size_t>(a->second)];
+  const auto x = d.loose.find(node);
+  return x == d.loose.end() ? nullptr : &x->second;
+}
+
+bool is_of_pairs(const InpDeck& d, const Imported& in, std::int64_t node) {
+  const auto a = d.node.find(node);
+  return a != d.node.end() && !sheets_at(in, a->second).empty();
+}
+
+std::string free_body_name(const InpDeck& d, std::string wish) {
+  const auto taken = [&] {
+    const std::string key = upper(wish);
+    return d.nset.contains(key) || d.elset.contains(key) ||
+           std::ranges::any_of(d.surfaces, [&](const InpSurface& s) { return upper(s.name) == key; });
+  };
+  while (taken()) wish += "_body";
+  return wish;
 }
 
 std::vector<std::int64_t> inp_nodes(const InpDeck& d, const InpTarget& t) {

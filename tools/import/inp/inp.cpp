@@ -382,8 +382,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   find_equations(d, in);
   find_ties(d, in, surface);
   for (const auto& [id, body] : d.bodies)
-    if (const auto a = d.node.find(id); a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty())
-      in.body_of_node[a->second] = body_name(d, id);
+    if (is_of_pairs(d, in, id)) in.body_of_node[d.node.at(id)] = body_name(d, id);
   write_inp_scene(d, in, names, node_set, surface, options);
   return in;
 }

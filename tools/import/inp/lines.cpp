@@ -54,11 +54,15 @@ std::string Card::value(const std::string& param, const std::string& fallback) c
   const Param* p = find(param);
   return p ? p->value : fallback;
 }
-std::string Card::word(const std::string& param) const { return upper(value(param)); }
+std::string Card::word(const std::string& param, const std::string& fallback) const { return upper(value(param, fallback)); }
 std::string Card::need(const std::string& param) const {
   const Param* p = find(param);
   if (!p || p->value.empty()) throw Error(fmt::format("{}:1", place()), fmt::format("{} lacks {}=", name, param));
   return p->value;
+}
+double Card::number(const std::string& param) const { return DataLine{file, line, {{need(param), params.at(param).column}}}.number(0); }
+std::int64_t Card::integer(const std::string& param) const {
+  return DataLine{file, line, {{need(param), params.at(param).column}}}.integer(0);
 }
 
 InpLines::InpLines(const std::string& path) : folder_(std::filesystem::path(path).parent_path().string()) { open(path, ""); }

@@ -45,7 +45,7 @@ void read_supports(InpReading& r) {
   InpDeck& d = r.deck;
   Imported& in = r.in;
   if (const auto odd = unknown_param(card, {"OP", "AMPLITUDE", "TYPE", "FIXED", "LOADCASE"}); !odd.empty()) return r.skip(odd);
-  const std::string type = card.has("TYPE") ? card.word("TYPE") : "DISPLACEMENT";
+  const std::string type = card.word("TYPE", "DISPLACEMENT");
   const int rate = type == "VELOCITY" ? 1 : type == "ACCELERATION" ? 2 : 0;
   if (rate == 0 && type != "DISPLACEMENT") return r.skip("*BOUNDARY, TYPE=" + type);
   if (other_case(r)) return;
@@ -153,7 +153,7 @@ void read_distributed(InpReading& r) {
 
 void read_transform(InpReading& r) {
   InpTransform t{{upper(r.card.need("NSET")), 0, r.card.place()}};
-  const std::string type = r.card.has("TYPE") ? r.card.word("TYPE") : "R";
+  const std::string type = r.card.word("TYPE", "R");
   t.cylindrical = type == "C", t.is_read = type == "R" || type == "C";
   DataLine l;
   if (r.lines.next_data(l)) t.a = Vec3(l.number(0), l.number(1), l.number(2)), t.b = Vec3(l.number(3), l.number(4), l.number(5));

@@ -17,7 +17,7 @@ DeckMaterial& material_of(InpReading& r) {
   return r.deck.materials[r.deck.material];
 }
 DeckMaterial& material_of(InpReading& r, DataLine& l, const char* expected) {
-  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", fmt::format("{} lacks its data line", r.card.name), expected);
+  first_line(r, l, expected);
   return material_of(r);
 }
 
@@ -60,7 +60,7 @@ void set_orthotropic(DeckMaterial& m, const std::vector<double>& v) {
 }
 
 void read_elastic(InpReading& r) {
-  const std::string type = r.card.has("TYPE") ? r.card.word("TYPE") : "ISO";
+  const std::string type = r.card.word("TYPE", "ISO");
   DataLine l;
   if (type.starts_with("ENGINEERING")) {
     auto& m = material_of(r, l, "E1, E2, E3, nu12, nu13, nu23, G12, G13 and on the next line G23");
@@ -91,7 +91,7 @@ void read_elastic(InpReading& r) {
 
 /// Yield stress by equivalent plastic strain, of the first temperature.
 void read_plastic(InpReading& r) {
-  const std::string hardening = r.card.has("HARDENING") ? r.card.word("HARDENING") : "ISOTROPIC";
+  const std::string hardening = r.card.word("HARDENING", "ISOTROPIC");
   if (hardening != "ISOTROPIC" && hardening != "KINEMATIC") return no_law(r, material_of(r), "*PLASTIC, HARDENING=" + hardening);
   DataLine l;
   auto& m = material_of(r, l, "yield stress, plastic strain");
@@ -119,7 +119,7 @@ void read_plastic(InpReading& r) {
 void read_rates(InpReading& r) {
   DataLine l;
   auto& m = material_of(r, l, "D, n");
-  const std::string type = r.card.has("TYPE") ? r.card.word("TYPE") : "POWERLAW";
+  const std::string type = r.card.word("TYPE", "POWERLAW");
   if (type != "POWERLAW") return no_law(r, m, "*RATE DEPENDENT, TYPE=" + type);
   const double D = l.number(0), n = l.number(1);
   if (!(D > 0)) throw Error(l.place(0), fmt::format("material {}: *RATE DEPENDENT: D = {:g} is not positive", m.name, D));
@@ -190,32 +190,18 @@ void read_orientation(InpReading& r) {
   InpOrientation o;
   o.name = r.card.need("NAME"), o.place = r.card.place();
   DataLine l;
-  const std::string system = r.card.has("SYSTEM") ? r.card.word("SYSTEM") : "RECTANGULAR";
+  const std::string system = r.card.word("SYSTEM", "RECTANGULAR");
   if (system != "RECTANGULAR") {
     o.not_read = "*ORIENTATION, SYSTEM=" + system;
   } else if (const auto odd = unknown_param(r.card, {"NAME", "SYSTEM"}); !odd.empty()) {
     o.not_read = odd;
   } else {
-    if (!r.lines.next_data(l))
-      throw Error(r.card.place() + ":1", "*ORIENTATION lacks its data line", "a point on axis 1, one in the plane 1-2");
+    first_line(r, l, "a point on axis 1, one in the plane 1-2");
     for (int i = 0; i < 3; ++i) o.a[i] = l.number(i) - l.number(6 + i), o.b[i] = l.number(3 + i) - l.number(6 + i);
     if (!(o.a.cross(o.b).norm() > 0)) throw Error(l.place(), fmt::format("*ORIENTATION {}: the two points span no plane", o.name));
     if (r.lines.next_data(l) && l.number(1) != 0) o.not_read = "*ORIENTATION turned about an axis";
   }
   r.deck.orientations[upper(o.name)] = o;
-}
-
-void read_section(InpReading& r) {
-  const Card& card = r.card;
-  InpSection s{upper(card.need("ELSET")), upper(card.value("MATERIAL")), card.need("ELSET"),
-               card.value("MATERIAL"),    card.place("ELSET"),           card.place("MATERIAL")};
-  if (s.material.empty()) r.skip("*SOLID SECTION without MATERIAL");
-  if (card.has("ORIENTATION"))
-    s.orientation_name = card.need("ORIENTATION"), s.orientation = upper(s.orientation_name),
-    s.orientation_place = card.place("ORIENTATION");
-  DataLine l;
-  if (r.lines.next_data(l)) s.area = l.number(0);
-  r.deck.sections.push_back(s);
 }
 
 InpSection section_of(InpReading& r, bool layered = false) {
@@ -225,6 +211,17 @@ InpSection section_of(InpReading& r, bool layered = false) {
   s.card = card.name;
   if (s.material.empty() && !layered) r.skip(card.name + " without MATERIAL");
   return s;
+}
+
+void read_section(InpReading& r) {
+  const Card& card = r.card;
+  InpSection s = section_of(r);
+  if (card.has("ORIENTATION"))
+    s.orientation_name = card.need("ORIENTATION"), s.orientation = upper(s.orientation_name),
+    s.orientation_place = card.place("ORIENTATION");
+  DataLine l;
+  if (r.lines.next_data(l)) s.area = l.number(0);
+  r.deck.sections.push_back(s);
 }
 
 /// Lines of COMPOSITE: thickness, points of integration, material and orientation of each layer.  Layers of one material are one plate.
@@ -259,7 +256,7 @@ void read_shell_section(InpReading& r) {
     read_layers(r, s);
   } else {
     DataLine l;
-    if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data line", "the thickness");
+    first_line(r, l, "the thickness");
     s.thickness = l.number(0);
     if (!(s.thickness > 0)) throw Error(l.place(0), fmt::format("{}: a thickness of {:g}", r.card.name, s.thickness));
   }
@@ -337,11 +334,10 @@ DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::ar
 
 /// Sizes of the section, then its direction 1.
 void read_beam_section(InpReading& r) {
-  if (const auto odd = unknown_param(r.card, {"ELSET", "MATERIAL", "SECTION", "ORIENTATION", "OFFSET1", "OFFSET2"}); !odd.empty())
-    throw Error(r.card.place() + ":1", odd + " is not read", "a section without it");
+  require_known(r.card, {"ELSET", "MATERIAL", "SECTION", "ORIENTATION", "OFFSET1", "OFFSET2"}, "a section without it");
   InpSection s = section_of(r);
   DataLine l;
-  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data line", "the sizes of the section");
+  first_line(r, l, "the sizes of the section");
   r.card.need("SECTION");
   std::array<double, 2> extent;
   double above = 0;
@@ -362,11 +358,10 @@ void read_beam_section(InpReading& r) {
 /// A, I11, I12, I22, J; direction 1; E, G.  Direction 1 is axis 2 of hilo, so I11 = int x2^2 is I2.  With a shape and a MATERIAL, as in
 /// CalculiX, it is *BEAM SECTION.
 void read_general_section(InpReading& r) {
-  const std::string type = r.card.has("SECTION") ? r.card.word("SECTION") : "GENERAL";
+  const std::string type = r.card.word("SECTION", "GENERAL");
   if (type != "GENERAL" && r.card.has("MATERIAL")) return read_beam_section(r);
   if (type != "GENERAL") throw Error(r.card.place("SECTION"), fmt::format("{}, SECTION={} is not read", r.card.name, type), "GENERAL is");
-  if (const auto odd = unknown_param(r.card, {"ELSET", "SECTION", "DENSITY", "POISSON"}); !odd.empty())
-    throw Error(r.card.place() + ":1", odd + " is not read", "a section without it");
+  require_known(r.card, {"ELSET", "SECTION", "DENSITY", "POISSON"}, "a section without it");
   InpSection s{upper(r.card.need("ELSET")), "", r.card.need("ELSET"), "", r.card.place("ELSET"), ""};
   s.card = r.card.name;
   DataLine l;

@@ -48,7 +48,7 @@ void make_room(const std::string& name, bool of_nodes, InpDeck& d) {
 }
 
 void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
-  const std::string system = card.has("SYSTEM") ? card.word("SYSTEM") : "R";
+  const std::string system = card.word("SYSTEM", "R");
   if (system != "R" && system != "C")
     throw Error(card.place("SYSTEM"), "*NODE in spherical axes is not read", "write the nodes in rectangular or cylindrical axes");
   InpSet* set = card.has("NSET") ? &set_of_nodes(card.need("NSET"), d) : nullptr;
@@ -224,7 +224,7 @@ void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   if (d.in_assembly)
     for (InpSurface& other : d.surfaces)
       if (upper(other.name) == upper(s.name) && other.name.find('.') == std::string::npos) other.name = d.instance + "." + other.name;
-  const std::string type = card.has("TYPE") ? card.word("TYPE") : "ELEMENT";
+  const std::string type = card.word("TYPE", "ELEMENT");
   s.of_nodes = type == "NODE";
   if (!s.of_nodes && type != "ELEMENT") {
     in.skip(fmt::format("*SURFACE, TYPE={}", type), card.place());

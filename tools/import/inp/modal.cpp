@@ -15,8 +15,7 @@ namespace {
 
 /// Increment and end of *MODAL DYNAMIC, or the band of *STEADY STATE DYNAMICS.
 void read_modal(InpReading& r) {
-  if (r.deck.steps.empty()) r.deck.steps.emplace_back();
-  InpStep& s = r.deck.steps.back();
+  InpStep& s = step_of(r);
   s.procedure = r.card.name;
   if (r.step < 2) r.skip(r.card.name);  // of modes that another job has kept
   const bool sweep = r.card.key == "STEADYSTATEDYNAMICS";

@@ -54,18 +54,14 @@ void read_base_motion(InpReading& r) {
   if (const auto odd = unknown_param(card, {"DOF", "AMPLITUDE", "TYPE", "SCALE"}); !odd.empty()) return r.skip(odd);
   if (r.step == 0) throw Error(card.place() + ":1", "*BASE MOTION outside a *STEP");
   if (r.step > 1) r.deck.steps.back().not_read = card.name;
-  const auto number = [&](const char* key) {
-    const std::string text = card.need(key);
-    return DataLine{card.file, card.line, {{text, card.params.at(key).column}}}.number(0);
-  };
   InpBaseMotion m;
-  const double dof = number("DOF");
+  const double dof = card.number("DOF");
   if (!(dof == 1 || dof == 2 || dof == 3 || dof == 4 || dof == 5 || dof == 6))
     throw Error(card.place("DOF"), fmt::format("*BASE MOTION, DOF={}", card.value("DOF")), "1 to 6");
   m.component = static_cast<int>(dof);
   m.amplitude = card.word("AMPLITUDE"), m.step = r.step, m.place = card.place();
-  if (card.has("SCALE")) m.scale = number("SCALE");
-  const std::string type = card.has("TYPE") ? card.word("TYPE") : "ACCELERATION";
+  if (card.has("SCALE")) m.scale = card.number("SCALE");
+  const std::string type = card.word("TYPE", "ACCELERATION");
   if (type != "DISPLACEMENT" && type != "VELOCITY" && type != "ACCELERATION")
     throw Error(card.place("TYPE"), "*BASE MOTION, TYPE=" + type, "DISPLACEMENT, VELOCITY or ACCELERATION");
   m.rate = type == "DISPLACEMENT" ? 0 : type == "VELOCITY" ? 1 : 2;

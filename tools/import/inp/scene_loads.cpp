@@ -97,7 +97,7 @@ std::map<size_t, Rows> InpScene::by_number_of_nodes(const Rows& nodes) {
   std::map<size_t, Rows> out;
   for (const auto a : nodes) {
     size_t n = 1;
-    if (in_.sheets && !in_.sheets->at(a).empty()) n = in_.nodes_counted[a] = count_nodes(in_.sheets->at(a), of_solids_.contains(a));
+    if (const auto& sheets = sheets_at(in_, a); !sheets.empty()) n = in_.nodes_counted[a] = count_nodes(sheets, of_solids_.contains(a));
     out[n].push_back(a);
   }
   return out;
@@ -144,13 +144,9 @@ void InpScene::forces_of_ties() {
         scene_.add_unique({"load", "force"}, name, s.place,
                           {{"on", name}, {"force", s.F * si("N")}, {"at", point(d_.bodies.at(key.first).X)}, {"history", *past}});
       Vec3 M = s.M;
-      if (const auto a = d_.node.find(key.first); a != d_.node.end() && in_.sheets && !in_.sheets->at(a->second).empty() &&
-                                                  !of_beams_.contains(key.first) && is_flat(in_.sheets->at(a->second))) {
-        const Vec3& n = in_.sheets->at(a->second).front().normal;
-        if (std::abs(M.dot(n)) > 1e-6 * M.norm())
+      if (is_of_pairs(d_, in_, key.first) && !of_beams_.contains(key.first))
+        if (const auto& sheets = sheets_at(in_, d_.node.at(key.first)); is_flat(sheets) && drop_drilling(sheets, M))
           in_.skip("*CLOAD: a moment about the normal of a shell, which does not resist it", s.place);
-        M -= n * n.dot(M);
-      }
       if (M.norm() > 0)
         scene_.add_unique({"load", "torque"}, name + "_torque", s.place, {{"on", name}, {"torque", M * si("N m")}, {"history", *past}});
       continue;

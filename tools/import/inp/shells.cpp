@@ -53,7 +53,7 @@ void find_bodies_of_shells(InpDeck& d, Imported& in) {
     for (const auto a : of_shells(l))
       if (l.last > 3 || std::ranges::any_of(in.sheets->at(a), [](const Sheets::Part& p) { return p.offset != 0; })) make(a, l.place);
   const auto by_number = [&](std::int64_t id, const std::string& place) {
-    if (const auto a = d.node.find(id); a != d.node.end() && !in.sheets->at(a->second).empty()) make(a->second, place);
+    if (is_of_pairs(d, in, id)) make(d.node.at(id), place);
   };
   for (const auto& [id, p] : d.points)
     for (const auto n : p.nodes)

@@ -57,15 +57,7 @@ class PointSpring {
           damps() ? "force, velocity" : "force, extension");
   }
 
-  std::string unique(std::string wish) const {
-    const auto taken = [&] {
-      const std::string key = upper(wish);
-      return d_.nset.contains(key) || d_.elset.contains(key) ||
-             std::ranges::any_of(d_.surfaces, [&](const InpSurface& s) { return upper(s.name) == key; });
-    };
-    while (taken()) wish += "_body";
-    return wish;
-  }
+  std::string unique(const std::string& wish) const { return free_body_name(d_, wish); }
 
   /// A body of no mass that slides along the axis on `on`, and with the component of an end.
   void slider(const std::string& name, const std::string& on, const InpSpringEnd& e) const {

@@ -133,12 +133,6 @@ void read_step(InpReading& r) {
   if (r.card.has("AMPLITUDE")) s.ramps = r.card.word("AMPLITUDE") != "STEP", s.ramps_said = true;
 }
 
-/// The step at hand; a procedure may stand without one.
-InpStep& step_of(InpReading& r) {
-  if (r.deck.steps.empty()) r.deck.steps.emplace_back();
-  return r.deck.steps.back();
-}
-
 /// *STATIC, *DYNAMIC and *FREQUENCY become scene lines.
 void read_procedure(InpReading& r) {
   InpStep& s = step_of(r);
@@ -149,23 +143,16 @@ void read_procedure(InpReading& r) {
   s.direct = r.card.has("DIRECT") || r.card.has("EXPLICIT");
   r.card.find("SOLVER");  // of no effect here
 }
-/// How many modes; a band of frequencies is not asked for.
-void read_frequency(InpReading& r) {
-  step_of(r).procedure = r.card.name;
-  for (const char* of_no_effect : {"SOLVER", "STORAGE", "EIGENSOLVER", "NORMALIZATION"}) r.card.find(of_no_effect);
-  DataLine l;
-  if (!r.lines.next_data(l)) return;
-  step_of(r).n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
-  if (l.number(3) != 0) r.in.skip("*FREQUENCY: its fourth number (it scales masses, or is a shift)", l.place(3));
-  l.ignore_rest();
-}
-/// How many shapes; the accuracy of the search is ours.
-void read_buckle(InpReading& r) {
+/// How many modes or shapes; a band of frequencies is not asked for, and the accuracy of the search is ours.
+void read_modes(InpReading& r) {
+  const bool frequency = r.card.key == "FREQUENCY";
   step_of(r).procedure = r.card.name;
   for (const char* of_no_effect : {"SOLVER", "EIGENSOLVER"}) r.card.find(of_no_effect);
+  if (frequency) r.card.find("STORAGE"), r.card.find("NORMALIZATION");
   DataLine l;
   if (!r.lines.next_data(l)) return;
   step_of(r).n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
+  if (frequency && l.number(3) != 0) r.in.skip("*FREQUENCY: its fourth number (it scales masses, or is a shift)", l.place(3));
   l.ignore_rest();
 }
 void other_procedure(InpReading& r) {
@@ -177,6 +164,11 @@ void end_assembly(InpReading& r) { r.deck.in_assembly = false; }
 void nothing(InpReading&) {}
 
 }  // namespace
+
+InpStep& step_of(InpReading& r) {
+  if (r.deck.steps.empty()) r.deck.steps.emplace_back();
+  return r.deck.steps.back();
+}
 
 std::span<const InpCard> inp_step_cards() {
   static constexpr InpCard cards[] = {
@@ -192,9 +184,9 @@ std::span<const InpCard> inp_step_cards() {
       {"ENDSTEP", nothing},
       {"STATIC", read_procedure, false, true},
       {"DYNAMIC", read_procedure, false, true},
-      {"FREQUENCY", read_frequency, false, true},
+      {"FREQUENCY", read_modes, false, true},
       {"COMPLEXFREQUENCY", other_procedure, false, true},
-      {"BUCKLE", read_buckle, false, true},
+      {"BUCKLE", read_modes, false, true},
       {"HEATTRANSFER", other_procedure, false, true},
       {"VISCO", other_procedure, false, true},
       {"COUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},

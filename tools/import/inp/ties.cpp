@@ -203,14 +203,8 @@ void tied_lines(const InpDeck& d, const InpNodal& l, const std::function<void(st
 std::string body_name(const InpDeck& d, std::int64_t id) {
   const bool assembly = id >= assembly_numbers;
   std::string name = id < 0 ? fmt::format("rigid_body_{}", -id) : fmt::format("node_{}", assembly ? id - assembly_numbers : id);
-  const auto taken = [&] {
-    const std::string key = upper(name);
-    return d.nset.contains(key) || d.elset.contains(key) ||
-           std::any_of(d.surfaces.begin(), d.surfaces.end(), [&](const InpSurface& s) { return upper(s.name) == key; });
-  };
   if (assembly && d.node.contains(id - assembly_numbers)) name = "assembly_" + name;
-  while (taken()) name += "_body";
-  return name;
+  return free_body_name(d, name);
 }
 
 double size_of(const InpDeck& d, const Mesh& mesh) {
@@ -222,10 +216,7 @@ double size_of(const InpDeck& d, const Mesh& mesh) {
 }
 
 void write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOptions& o, SceneWriter& scene) {
-  const auto X = [&](std::int64_t id) {
-    const auto a = d.node.find(id);
-    return a != d.node.end() ? in.mesh.X[a->second] : d.loose.at(id);
-  };
+  const auto X = [&](std::int64_t id) { return *point_of(d, in.mesh, id); };
   std::map<std::int64_t, std::string> of_node;
   const auto end_name = [&](std::int64_t id) {
     if (d.bodies.contains(id)) return body_name(d, id);
