@@ -235,18 +235,18 @@ bool BdfEntries::next(BdfEntry& e) {
     end_data(l);
     return false;
   }
-  e.data = {&l.source->path, l.number, {}};
-  Ends ends = cut(l, e.data.fields);
+  static_cast<DataLine&>(e) = {&l.source->path, l.number, {}};
+  Ends ends = cut(l, e.fields);
   e.name = upper(ends.first);
   if (e.name.empty() || e.name.front() == '+' || e.name.front() == '*')
     throw Error(l.place(), "a continuation that follows no entry", "sort the continuations after their entries");
   bool large = e.name.back() == '*', half = large;
   if (large) e.name.pop_back();
   while (bulk_line(l)) {
-    const auto mark = e.data.fields.size();
-    const Ends more = cut(l, e.data.fields);
+    const auto mark = e.fields.size();
+    const Ends more = cut(l, e.fields);
     if (!more.first.empty() && more.first.front() != '+' && more.first.front() != '*') {
-      e.data.fields.resize(mark);
+      e.fields.resize(mark);
       ahead_ = l, ahead_given_ = true;
       break;
     }
@@ -259,7 +259,7 @@ bool BdfEntries::next(BdfEntry& e) {
     half = large && !half;
     ends = more;
   }
-  while (!e.data.fields.empty() && e.data.fields.back().text.empty()) e.data.fields.pop_back();
+  while (!e.fields.empty() && e.fields.back().text.empty()) e.fields.pop_back();
   return true;
 }
 

@@ -10,7 +10,7 @@
 namespace hilo {
 
 DeckMaterial& material_of(const BdfEntry& e, BdfDeck& deck) {
-  const auto id = e.data.integer(0);
+  const auto id = e.integer(0);
   auto& m = deck.materials[id];
   m.name = fmt::format("mat_{}", id);
   return m;
@@ -24,8 +24,7 @@ void no_law(DeckMaterial& m, Imported& in, const std::string& what, const std::s
 }
 
 /// MID E G NU RHO A TREF GE; a density that is 0 or blank is none.
-void read_mat1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_mat1(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (const auto old = deck.materials.find(d.integer(0));
       old != deck.materials.end() && !std::isnan(old->second.data.nu + old->second.data.E))
     throw Error(d.place(0), fmt::format("MAT1 {} is given twice", d.integer(0)), "number each material once");
@@ -56,16 +55,15 @@ void read_mat1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (d.number(5) != 0) in.skip("MAT1: thermal expansion", d.place(5));
   if (d.number(7) != 0) in.skip("MAT1: structural damping GE", d.place(7));
   d.ignore_rest();  // its reference temperature, and limits of stress
-  DeckMaterial& material = material_of(e, deck);
+  DeckMaterial& material = material_of(d, deck);
   material.data = m;
   if (E && G) material.G = d.number(2);
 }
 
-void read_mats1(const BdfEntry& e, BdfDeck& deck, Imported&) { deck.metals.push_back(e.data); }
+void read_mats1(const BdfEntry& e, BdfDeck& deck, Imported&) { deck.metals.push_back(e); }
 
 /// Pairs x, y from the second line on, up to ENDT.
-void read_tables1(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_tables1(const BdfEntry& d, BdfDeck& deck, Imported&) {
   auto& table = deck.tables[d.integer(0)];
   for (size_t i = 8; i < d.fields.size(); i += 2) {
     const std::string word = upper(d.text(i));
@@ -77,9 +75,8 @@ void read_tables1(const BdfEntry& e, BdfDeck& deck, Imported&) {
 }
 
 /// W = A10 (I1 - 3) + A01 (I2 - 3) + D1 (J - 1)^2 of the isochoric invariants; higher orders have no law here.
-void read_mathp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
-  DeckMaterial& m = material_of(e, deck);
+void read_mathp(const BdfEntry& d, BdfDeck& deck, Imported& in) {
+  DeckMaterial& m = material_of(d, deck);
   const double c10 = d.number(1), c01 = d.number(2), D1 = d.number(3, 1000 * (c10 + c01));
   if (!(c10 + c01 > 0)) throw Error(d.place(1), fmt::format("MATHP {}: A10 + A01 is not positive", d.integer(0)));
   if (!(D1 > 0)) throw Error(d.place(3), fmt::format("MATHP {}: D1 is not positive", d.integer(0)));
@@ -94,9 +91,8 @@ void read_mathp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 }
 
 /// MID E1 E2 NU12 G12 G1Z G2Z RHO, of plane stress: across the shell E3 is E2, and its ratios are 0, which leaves the plane as it is.
-void read_mat8(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
-  DeckMaterial& m = material_of(e, deck);
+void read_mat8(const BdfEntry& d, BdfDeck& deck, Imported& in) {
+  DeckMaterial& m = material_of(d, deck);
   const double E1 = d.number(1), E2 = d.number(2), nu12 = d.number(3), G12 = d.number(4);
   for (const size_t i : {1, 2, 4})
     if (!(d.number(i) > 0)) throw Error(d.place(i), fmt::format("MAT8 {}: the modulus {:g} is not positive", d.integer(0), d.number(i)));
@@ -116,7 +112,7 @@ void read_mat8(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 }
 
 /// Kinds without a law here.
-void read_other(const BdfEntry& e, BdfDeck& deck, Imported& in) { no_law(material_of(e, deck), in, e.name, e.data.place()); }
+void read_other(const BdfEntry& e, BdfDeck& deck, Imported& in) { no_law(material_of(e, deck), in, e.name, e.place()); }
 
 }  // namespace
 

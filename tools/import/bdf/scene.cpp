@@ -159,23 +159,14 @@ void BdfScene::turned_material(std::int64_t property, const DeckMaterial& m, Sce
 
 /// What the supports of the subcase hold.
 void BdfScene::hold() {
-  std::vector<std::int64_t> sets;
   const BdfCase& chosen = deck_.chosen;
-  const auto is_there = [&](std::int64_t id) { return deck_.supports.contains(id) || deck_.support_sums.contains(id); };
-  if (chosen.spc >= 0 && !is_there(chosen.spc)) in_.skip(fmt::format("SPC = {}, of which there is none", chosen.spc), "case control");
-  std::int64_t take = chosen.spc;
-  if (take < 0 && chosen.load < 0 && !chosen.any) {  // no case control: one set is meant
-    if (deck_.support_sums.size() == 1)
-      take = deck_.support_sums.begin()->first;
-    else if (deck_.supports.size() == 1)
-      take = deck_.supports.begin()->first;
-  }
-  if (const auto sum = deck_.support_sums.find(take); sum != deck_.support_sums.end())
-    sets = sum->second.sets;
-  else if (take >= 0)
-    sets = {take};
-  for (const auto& [id, lines] : deck_.supports)
-    if (std::find(sets.begin(), sets.end(), id) == sets.end())
+  const auto& all = deck_.supports;
+  if (chosen.spc >= 0 && !all.has(chosen.spc)) in_.skip(fmt::format("SPC = {}, of which there is none", chosen.spc), "case control");
+  const auto take = chosen.spc < 0 && chosen.load < 0 && !chosen.any ? all.only() : chosen.spc;
+  const BdfSum* sum = all.sum(take);
+  const BdfSum taken = sum ? *sum : BdfSum{1, {{1, take}}, ""};
+  for (const auto& [id, lines] : all.lines)
+    if (std::ranges::find(taken.parts, std::pair(1., id)) == taken.parts.end())
       in_.skip("SPC of a set that the first subcase does not use", lines.front().place, static_cast<std::int64_t>(lines.size()));
 
   for (size_t a = 0; a < deck_.grids.size(); ++a)
@@ -185,11 +176,10 @@ void BdfScene::hold() {
       for (const char c : always)
         if (c >= '1' && c <= '6') h.bits |= 1u << (c - '1');
     }
-  for (const auto id : sets) {
-    const auto lines = deck_.supports.find(id);
-    if (lines == deck_.supports.end()) {
-      if (const auto sum = deck_.support_sums.find(take); sum != deck_.support_sums.end())
-        in_.skip(fmt::format("SPCADD of set {}, of which there is none", id), sum->second.place);
+  for (const auto& [factor, id] : taken.parts) {
+    const auto lines = all.lines.find(id);
+    if (lines == all.lines.end()) {
+      if (sum) in_.skip(fmt::format("SPCADD of set {}, of which there is none", id), sum->place);
       continue;
     }
     for (const BdfSupport& s : lines->second)

@@ -74,7 +74,7 @@ void BdfScene::find_bodies_of_shells() {
   for (const BdfSpring& s : deck_.springs)
     for (const auto g : s.grids) make(g, s.place, s.name);
   for (const BdfMass& m : masses_) make(m.grid, m.place, "CONM2");
-  for (const auto& [id, list] : deck_.ties)
+  for (const auto& [id, list] : deck_.ties.lines)
     for (const BdfEquation& m : list)
       for (const auto& t : m.terms) make(t.grid, m.place, "MPC");
   for (const auto& [factor, l] : loads_) {
@@ -319,14 +319,11 @@ bool BdfScene::is_joint(const BdfEquation& m) const {
 /// which slides along them.
 void BdfScene::equations() {
   const BdfCase& chosen = deck_.chosen;
-  const auto sum = deck_.tie_sums.find(chosen.mpc);
   EqualDisplacements equals;
   std::map<Displacement, std::string> place;
   std::map<std::pair<std::int64_t, std::int64_t>, std::pair<unsigned, std::string>> joints;  // between rows: components, first place
-  for (const auto& [id, list] : deck_.ties) {
-    const bool taken =
-        !chosen.any || id == chosen.mpc ||
-        (sum != deck_.tie_sums.end() && std::find(sum->second.sets.begin(), sum->second.sets.end(), id) != sum->second.sets.end());
+  for (const auto& [id, list] : deck_.ties.lines) {
+    const bool taken = !chosen.any || deck_.ties.takes(chosen.mpc, id);
     if (!taken) in_.skip("MPC of a set that the first subcase does not use", list.front().place, static_cast<std::int64_t>(list.size()));
     for (const BdfEquation& m : list) {
       if (!taken) continue;

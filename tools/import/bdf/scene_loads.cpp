@@ -72,28 +72,22 @@ std::vector<Vec3> forces_of_pressure(const std::vector<Vec3>& x, const std::vect
 
 void BdfScene::choose_loads() {
   const BdfCase& chosen = deck_.chosen;
-  std::int64_t take = chosen.load;
-  if (take >= 0 && !deck_.loads.contains(take) && !deck_.load_sums.contains(take))
-    in_.skip(fmt::format("LOAD = {}, of which there is none", take), "case control");
-  if (take < 0 && chosen.spc < 0 && !chosen.any) {  // no case control: one set is meant
-    if (deck_.load_sums.size() == 1)
-      take = deck_.load_sums.begin()->first;
-    else if (deck_.loads.size() == 1)
-      take = deck_.loads.begin()->first;
-  }
+  const auto& all = deck_.loads;
+  if (chosen.load >= 0 && !all.has(chosen.load)) in_.skip(fmt::format("LOAD = {}, of which there is none", chosen.load), "case control");
+  const auto take = chosen.load < 0 && chosen.spc < 0 && !chosen.any ? all.only() : chosen.load;
   std::set<std::int64_t> taken;
   const auto add = [&](double factor, std::int64_t id) {
-    const auto set = deck_.loads.find(id);
-    if (set == deck_.loads.end()) return false;
+    const auto set = all.lines.find(id);
+    if (set == all.lines.end()) return false;
     taken.insert(id);
     for (const BdfLoad& l : set->second) loads_.emplace_back(factor, &l);
     return true;
   };
   add(1, take);
-  if (const auto sum = deck_.load_sums.find(take); sum != deck_.load_sums.end())
-    for (const auto& [factor, id] : sum->second.parts)
-      if (!add(sum->second.factor * factor, id)) in_.skip(fmt::format("LOAD of set {}, of which there is none", id), sum->second.place);
-  for (const auto& [id, lines] : deck_.loads)
+  if (const BdfSum* sum = all.sum(take))
+    for (const auto& [factor, id] : sum->parts)
+      if (!add(sum->factor * factor, id)) in_.skip(fmt::format("LOAD of set {}, of which there is none", id), sum->place);
+  for (const auto& [id, lines] : all.lines)
     if (!taken.contains(id))
       for (const BdfLoad& l : lines) in_.skip(fmt::format("{} of a set that the first subcase does not use", name_of(l.kind)), l.place);
 }

@@ -39,15 +39,14 @@ std::string BdfScene::pair_surface(std::int64_t region) {
 
 void BdfScene::pairs() {
   const BdfCase& taken = deck_.chosen;
-  const auto each = [&](const auto& all, const auto& sums, std::int64_t chosen, const std::string& card, const char* section,
+  const auto each = [&](const BdfSets<BdfGlue>& all, std::int64_t chosen, const std::string& card, const char* section,
                         const std::string& name, const auto& keys) {
-    const auto sum = sums.find(chosen);
-    if (chosen >= 0 && sum == sums.end() && !all.contains(chosen))
+    if (chosen >= 0 && !all.has(chosen))
       in_.skip(fmt::format("{} = {}, of which there is none", card == "BCTSET" ? "BCSET" : card, chosen), "case control");
     std::set<std::pair<std::string, std::string>> seen;
-    for (const auto& [id, list] : all)
+    for (const auto& [id, list] : all.lines)
       for (const BdfGlue& g : list) {
-        if (taken.any && id != chosen && (sum == sums.end() || std::ranges::count(sum->second.sets, id) == 0)) {
+        if (taken.any && !all.takes(chosen, id)) {
           in_.skip(card + " of a set that the first subcase does not use", g.place);
           continue;
         }
@@ -63,9 +62,9 @@ void BdfScene::pairs() {
         keys(g, scene_.add_unique(section, fmt::format("{}_{}", name, id), g.place, {{"a", a}, {"b", b}}));
       }
   };
-  each(deck_.glue, deck_.glue_sums, taken.glue, "BGSET", "tie", "glue",
+  each(deck_.glue, taken.glue, "BGSET", "tie", "glue",
        [&](const BdfGlue& g, SceneTable& tie) { tie.set_if(g.distance > 0, "gap", g.distance * options_.scale * si("m")); });
-  each(deck_.contacts, deck_.contact_sums, taken.contact, "BCTSET", "contact", "contact",
+  each(deck_.contacts, taken.contact, "BCTSET", "contact", "contact",
        [&](const BdfGlue& g, SceneTable& contact) { contact.set_if(g.friction > 0, "friction", g.friction); });
 }
 

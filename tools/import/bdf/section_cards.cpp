@@ -26,14 +26,13 @@ void set_shear_centre(BdfThin& s) {
 }
 
 /// PID MID A I1 I2 J NSM; stress points; K1 K2 I12.
-void read_pbar(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_pbar(const BdfEntry& d, BdfDeck& deck, Imported&) {
   BdfThin s;
   s.section = general_section(d.number(2), d.number(3), d.number(4), d.number(5));
   s.section.line_mass = d.number(6), s.section.I12 = -d.number(18);
   for (size_t i = 8; i < 16; ++i) d.number(i);  // where stresses are asked for
   set_shear(s.section, d.number(16), d.number(17), true);
-  add_property(e, deck, s);
+  add_property(d, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
@@ -49,8 +48,7 @@ void check_even(const std::vector<std::pair<double, Numbers>>& stations, const N
 
 /// PID MID A I1 I2 I12 J NSM, stress points; stations of SO X/XB A I1 I2 I12 J NSM, with stress points where SO is YES; K1 K2 S1 S2 NSI CW;
 /// M1 M2 of both ends, N1 N2 of both ends.
-void read_pbeam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_pbeam(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   std::array<double, 6> at_a, at_b;
   for (size_t i = 0; i < 6; ++i) at_a[i] = at_b[i] = d.number(2 + i);
   const auto word = [&](size_t i) { return upper(d.text(i)); };
@@ -83,7 +81,7 @@ void read_pbeam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   }
   if (apart && s.section.line_mass != 0) in.skip("PBEAM: NSM off the neutral axis", d.place(line + 8));
   set_shear_centre(s);
-  add_property(e, deck, s);
+  add_property(d, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
@@ -207,13 +205,12 @@ DeckSection general_of(const DeckSection& s, const std::string& place) {
 }
 
 /// PID MID GROUP TYPE; DIM1 DIM2 ... NSM
-void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_shape_of_section(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   const std::string type = upper(d.text(3));
   d.text(2);  // the library that has the type
   const auto shape = std::ranges::find(beam_shapes, type, &BeamShape::type);
   const auto refuse = [&](const std::string& what) {
-    return Error(d.place(3), fmt::format("{} {}: {} is not read", e.name, d.integer(0), what),
+    return Error(d.place(3), fmt::format("{} {}: {} is not read", d.name, d.integer(0), what),
                  "ROD, TUBE, TUBE2, BAR, BOX, BOX1, I, I1, H, CROSS, T, T1, T2, CHAN, CHAN1, CHAN2, L, Z, HAT and HAT1 are; write the "
                  "others as PBAR");
   };
@@ -234,7 +231,7 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   at_a.push_back(s.section.line_mass);
   std::vector<double> at_b = at_a;
   std::vector<std::pair<double, std::vector<double>>> stations;  // X/XB, and the numbers there
-  for (size_t station = 11 + dims.size(); e.name == "PBEAML" && station < d.fields.size(); station += dims.size() + 3) {  // behind SO, X/XB
+  for (size_t station = 11 + dims.size(); d.name == "PBEAML" && station < d.fields.size(); station += dims.size() + 3) {  // behind SO, X/XB
     auto& there = stations.emplace_back(d.number(station - 1), at_a).second;
     for (size_t i = 0; i < at_a.size(); ++i) there[i] = d.number(station + i, at_a[i]);
     if (stations.back().first == 1) at_b = there;
@@ -247,11 +244,11 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
     if (s.end.kind != s.section.kind) s.section = general_of(s.section, d.place()), s.end = general_of(s.end, d.place());
     s.neutral[1] = end_of(s.end);
   }
-  if (e.name == "PBARL") s.neutral = {};  // CBAR takes both centres as one
+  if (d.name == "PBARL") s.neutral = {};  // CBAR takes both centres as one
   set_shear_centre(s);
   if (s.section.line_mass != 0 && s.section.shear_centre != std::array{0., 0.})
     in.skip("PBEAML: NSM off the neutral axis", d.place(8 + dims.size()));
-  add_property(e, deck, s);
+  add_property(d, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
