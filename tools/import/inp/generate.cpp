@@ -129,8 +129,7 @@ void read_ngen(InpReading& r) {
   if (!system.empty() && system != "RC" && system != "C")
     throw Error(card.place("SYSTEM"), fmt::format("*NGEN, SYSTEM={} is not read", system), "RC or C, or a node as the extra point");
   InpSet* set = card.has("NSET") ? &set_of_nodes(card.need("NSET"), d) : nullptr;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const auto from = known_node(r, l, 0), to = known_node(r, l, 1), by = step_of(l, 2);
     const auto first = from - d.node_shift(), last = to - d.node_shift();
     const Vec3 a = place_of(d, from), b = place_of(d, to);  // copies: the nodes that follow move them
@@ -196,8 +195,7 @@ void read_nfill(InpReading& r) {
   InpDeck& d = r.deck;
   require_known(card, {"NSET", "BIAS", "TWOSTEP"}, "write the nodes out");
   InpSet* set = card.has("NSET") ? &set_of_nodes(card.need("NSET"), d) : nullptr;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const auto from = bound(r, l, 0), to = bound(r, l, 1);
     const auto n = count_of(l, 2, "intervals of *NFILL"), by = step_of(l, 3);
     if (from.size() != to.size())
@@ -264,8 +262,7 @@ void read_elgen(InpReading& r) {
   InpDeck& d = r.deck;
   require_known(card, {"ELSET", "ALLNODES"}, "write the elements out");
   InpSet* set = card.has("ELSET") ? &set_of_cells(card.need("ELSET"), d) : nullptr;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const auto number = l.integer(0), master = number < 0 || number > last_number(d) ? 0 : number + d.shift;
     if (!d.has_element(master)) throw Error(l.place(0), fmt::format("*ELGEN: no element {} so far", number), "*ELEMENT gives it before");
     std::array<std::int64_t, 3> n, nodes, numbers;

@@ -54,8 +54,7 @@ void read_supports(InpReading& r) {
   else if (r.step == 1 && card.word("OP") == "NEW")
     d.supports.erase(d.supports.begin(), d.supports.begin() + static_cast<std::ptrdiff_t>(std::exchange(r.supports_before_step, 0)));
   const std::string amplitude = card.word("AMPLITUDE");
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     InpNodal b{target_of(l)};
     b.amplitude = amplitude, b.step = r.step, b.rate = rate;
     if (!l.is_integer(1)) {
@@ -82,8 +81,7 @@ void read_supports(InpReading& r) {
 /// A value on a degree of freedom of a node or set, line by line.
 void read_nodal(InpReading& r, std::vector<InpNodal>& into) {
   const Card& card = r.card;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     InpNodal f{target_of(l)};
     f.amplitude = card.word("AMPLITUDE"), f.step = r.step;
     f.first = f.last = static_cast<int>(l.integer(1));
@@ -114,8 +112,7 @@ void read_distributed(InpReading& r) {
   if (other_case(r)) return;
   const bool surface = card.key == "DSLOAD";
   if (r.step > 1 && card.word("OP") == "NEW") r.deck.steps.back().new_distributed = true;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const std::string label = upper(l.text(1));
     const double value = l.number(2);
     if (l.text(0).empty()) {  // Abaqus: no target means the whole model
@@ -172,8 +169,7 @@ void read_amplitude(InpReading& r) {
   auto& a = r.deck.amplitudes[upper(name)];
   if (!a.name.empty()) throw Error(card.place(), fmt::format("*AMPLITUDE {} is given twice", name), "give each a name of its own");
   a.name = name, a.total = card.word("TIME").starts_with("TOTAL");
-  DataLine l;
-  while (r.lines.next_data(l))
+  for (DataLine l; r.lines.next_data(l);)
     for (size_t i = 0; i < l.fields.size(); i += 2) {  // a last value that is not there is 0
       if (l.empty(i)) continue;
       const double t = l.number(i);

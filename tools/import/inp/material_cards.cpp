@@ -226,9 +226,8 @@ void read_section(InpReading& r) {
 
 /// Lines of COMPOSITE: thickness, points of integration, material and orientation of each layer.  Layers of one material are one plate.
 void read_layers(InpReading& r, InpSection& s) {
-  DataLine l;
   bool same = true;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const double t = l.number(0);
     if (!(t > 0)) throw Error(l.place(0), fmt::format("{}: a layer of thickness {:g}", r.card.name, t));
     if (l.empty(2)) throw Error(l.place(), r.card.name + ", COMPOSITE: a layer without a material", "thickness, , MATERIAL");
@@ -271,8 +270,7 @@ void read_shell_section(InpReading& r) {
 }
 
 void read_nodal_thickness(InpReading& r) {
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const InpThickness t{target_of(l), l.number(1)};
     if (!(t.value > 0)) throw Error(l.place(1), fmt::format("{}: a thickness of {:g}", r.card.name, t.value));
     r.deck.thicknesses.push_back(t);

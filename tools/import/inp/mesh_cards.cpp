@@ -52,8 +52,7 @@ void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   if (system != "R" && system != "C")
     throw Error(card.place("SYSTEM"), "*NODE in spherical axes is not read", "write the nodes in rectangular or cylindrical axes");
   InpSet* set = card.has("NSET") ? &set_of_nodes(card.need("NSET"), d) : nullptr;
-  DataLine l;
-  while (lines.next_data(l)) {
+  for (DataLine l; lines.next_data(l);) {
     auto id = l.integer(0);
     if (id < 1 || id >= (d.shift ? instance_numbers : assembly_numbers))
       throw Error(l.place(0), fmt::format("node number {} is not one", id));
@@ -79,9 +78,8 @@ void read_system(InpReading& r) {
   InpDeck& d = r.deck;
   d.system_at = Vec3::Zero(), d.system_axes = Mat3::Identity();
   std::vector<double> x;
-  DataLine l;
   std::string place = r.card.place();
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     place = l.place();
     for (size_t i = 0; i < l.fields.size(); ++i) x.push_back(l.number(i));
     x.resize(x.size() <= 3 ? 3 : x.size() <= 6 ? 6 : 9);
@@ -117,9 +115,8 @@ void read_elements(InpReading& r) {
   const bool pyramid = type.starts_with("C3D5");
   const size_t n = pyramid ? 5 : of_beam ? of_beam : static_cast<size_t>(info(shape).n_nodes);
   InpSet* set = card.has("ELSET") ? &set_of_cells(card.need("ELSET"), d) : nullptr;
-  DataLine l;
   std::vector<std::int64_t> row;
-  while (lines.next_data(l)) {
+  for (DataLine l; lines.next_data(l);) {
     const std::string place = l.place(0);
     const int line = l.line;
     const std::string* file = &*d.files.insert(*l.file).first;  // the lines close before the cells are resolved
@@ -181,8 +178,7 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
           if (const auto c = d.cell.find(half); c != d.cell.end())
             add.insert(add.end(), d.cell_nodes.begin() + d.offset[c->second], d.cell_nodes.begin() + d.offset[c->second + 1]);
   }
-  DataLine l;
-  while (lines.next_data(l)) {
+  for (DataLine l; lines.next_data(l);) {
     if (card.has("GENERATE")) {
       if (!l.is_integer(0)) {  // CalculiX: a set name stands for itself here too
         const auto it = find(l.text(0));
@@ -230,8 +226,7 @@ void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
     in.skip(fmt::format("*SURFACE, TYPE={}", type), card.place());
     return;
   }
-  DataLine l;
-  while (lines.next_data(l)) {
+  for (DataLine l; lines.next_data(l);) {
     InpSurface::Line one{{"", 0, l.place()}};
     if (l.is_integer(0))
       one.id = l.integer(0) + (s.of_nodes ? d.node_shift() : d.shift);

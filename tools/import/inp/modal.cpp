@@ -35,8 +35,7 @@ void read_modal_damping(InpReading& r) {
   if (const auto odd = unknown_param(r.card, {"RAYLEIGH"}); !odd.empty() || r.step == 0) return r.skip(odd.empty() ? r.card.name : odd);
   InpModalDamping& m = r.deck.steps.back().damping;
   m.place = r.card.place();
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     if (rayleigh)
       m.alpha = l.number(2), m.beta = l.number(3), m.rayleigh = true;
     else
