@@ -44,6 +44,7 @@ struct DataLine {
   /// A number; an empty field is `fallback`.  Throws Error with the place.
   double number(size_t field, double fallback = 0) const;
   std::int64_t integer(size_t field) const;
+  std::int64_t integer(size_t field, std::int64_t fallback) const { return empty(field) ? fallback : integer(field); }
   bool is_integer(size_t field) const;
 };
 

@@ -19,11 +19,7 @@ namespace {
 
 std::vector<std::int64_t> rows(const BdfDeck& deck, const std::vector<std::int64_t>& ids, const BdfDeck::Cell& r) {
   std::vector<std::int64_t> nodes;
-  for (const auto id : ids) {
-    const auto a = deck.row.find(id);
-    if (a == deck.row.end()) throw Error(r.place, fmt::format("element {} names node {}, which does not exist", r.id, id));
-    nodes.push_back(a->second);
-  }
+  for (const auto id : ids) nodes.push_back(deck.row_of(id, r.place, "element", r.id));
   return nodes;
 }
 
@@ -91,14 +87,10 @@ void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine
   Mesh& m = in.mesh;
   m.X = deck.X;
   m.node_id = deck.node_id;
-  const auto property_name = [&](std::int64_t property) {
-    const auto n = deck.property_name.find(property);
-    return n == deck.property_name.end() ? fmt::format("pid_{}", property) : n->second;
-  };
   std::map<std::int64_t, CellGroup> by_property;
   const auto group_of = [&](std::int64_t property) -> CellGroup& {
     auto& g = by_property[property];
-    g.name = property_name(property);
+    g.name = deck.name_of(property);
     return g;
   };
   for (const auto& r : deck.cells) {
@@ -154,13 +146,12 @@ void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine
   for (auto& [pid, g] : by_property) regions.push_back(g);
   assign_regions(in, path, regions, false, {}, options);
   for (const auto& [pid, g] : by_property) {
-    const auto mid = deck.material_of.find(pid);
-    const auto mat = mid == deck.material_of.end() ? deck.materials.end() : deck.materials.find(mid->second);
+    const auto* material = deck.material(pid);
     for (const auto c : g.cells)
-      if (mat != deck.materials.end()) m.region_data[m.region[c]] = mat->second.carried();
+      if (material) m.region_data[m.region[c]] = material->second.carried();
   }
   SetNames names(in);
-  for (auto& [pid, f] : facets) names.facets(property_name(pid), std::move(f));
+  for (auto& [pid, f] : facets) names.facets(deck.name_of(pid), std::move(f));
   const std::unordered_set<std::int64_t> of_cells(m.nodes.begin(), m.nodes.end());
   const bool all = in.n_beams == 0 && m.n_cells() > 0;  // beside bodies alone sets of their grids say nothing
   for (const auto& [sid, lines] : deck.supports.lines) {

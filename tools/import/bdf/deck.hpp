@@ -228,6 +228,19 @@ struct BdfDeck {
   std::map<std::int64_t, double> mass_of;  // PMASS
   std::vector<BdfSpring> springs;
   std::map<std::pair<std::string, std::int64_t>, BdfSpringData> spring_data;  // by "PELAS", PDAMP, PBUSH, PBUSH1D and number
+
+  /// The material of a property, and its number; null where there is none.
+  const std::pair<const std::int64_t, DeckMaterial>* material(std::int64_t property) const {
+    const auto id = material_of.find(property);
+    const auto at = id == material_of.end() ? materials.end() : materials.find(id->second);
+    return at == materials.end() ? nullptr : &*at;
+  }
+  std::string name_of(std::int64_t property) const {
+    const auto name = property_name.find(property);
+    return name == property_name.end() ? fmt::format("pid_{}", property) : name->second;
+  }
+  /// The row of a grid; an Error where it is not there, "{who} {id} names node ...".
+  std::int64_t row_of(std::int64_t grid, const std::string& place, const char* who, std::int64_t id) const;
 };
 
 }  // namespace hilo

@@ -74,7 +74,7 @@ void read_rbe3(const BdfEntry& d, BdfDeck& deck, Imported& in) {
 
 /// EID G CID M X1 X2 X3 - I11 I21 I22 I31 I32 I33; the off-diagonal ones are integrals of products, so the tensor has them with a minus.
 void read_conm2(const BdfEntry& d, BdfDeck& deck, Imported&) {
-  BdfMass m{d.integer(0), d.integer(1), d.empty(2) ? 0 : d.integer(2), d.number(3), {}, Mat3::Zero(), d.place()};
+  BdfMass m{d.integer(0), d.integer(1), d.integer(2, 0), d.number(3), {}, Mat3::Zero(), d.place()};
   m.offset = Vec3(d.number(4), d.number(5), d.number(6));
   const double I[6] = {d.number(8), d.number(9), d.number(10), d.number(11), d.number(12), d.number(13)};
   m.inertia << I[0], -I[1], -I[3], -I[1], I[2], -I[4], -I[3], -I[4], I[5];
@@ -88,13 +88,13 @@ void read_conm2(const BdfEntry& d, BdfDeck& deck, Imported&) {
 void read_scalar_mass(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   BdfScalarMass m{d.name, d.place(), d.integer(0)};
   if (d.name == "CMASS1")
-    m.property = d.empty(1) ? m.id : d.integer(1);
+    m.property = d.integer(1, m.id);
   else
     m.mass = d.number(1);
   const size_t end = d.empty(2) ? 4 : 2;
   if (!d.empty(2) && !d.empty(4)) return in.skip(d.name + " between two grids", d.place(4));
   m.grid = d.integer(end);
-  const auto component = d.empty(end + 1) ? 0 : d.integer(end + 1);
+  const auto component = d.integer(end + 1, 0);
   if (component < 1 || component > 6)
     throw Error(d.place(end + 1), fmt::format("{} {}: component {} is not 1 to 6", d.name, m.id, component));
   m.component = static_cast<int>(component);
@@ -109,8 +109,8 @@ void read_pmass(const BdfEntry& e, BdfDeck& deck, Imported&) {
 
 void ends(const DataLine& d, size_t field, BdfSpring& s) {
   for (size_t i = 0; i < 2; ++i) {
-    s.grids[i] = d.empty(field + 2 * i) ? 0 : d.integer(field + 2 * i);
-    const auto c = d.empty(field + 2 * i + 1) ? 0 : d.integer(field + 2 * i + 1);
+    s.grids[i] = d.integer(field + 2 * i, 0);
+    const auto c = d.integer(field + 2 * i + 1, 0);
     if (c < 0 || c > 6) throw Error(d.place(field + 2 * i + 1), fmt::format("{} {}: component {} is not 1 to 6", s.name, s.id, c));
     s.component[i] = static_cast<int>(c);
     if (c == 0) s.grids[i] = 0;
@@ -120,7 +120,7 @@ void ends(const DataLine& d, size_t field, BdfSpring& s) {
 void read_scalar(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   BdfSpring s{d.name, d.place(), d.integer(0)};
   if (d.name.back() == '1')
-    s.property = d.empty(1) ? s.id : d.integer(1);
+    s.property = d.integer(1, s.id);
   else
     (d.name == "CELAS2" ? s.k : s.c)[0] = d.number(1);
   ends(d, 2, s);
@@ -129,8 +129,8 @@ void read_scalar(const BdfEntry& d, BdfDeck& deck, Imported& in) {
 }
 /// EID PID GA GB GO|X1 X2 X3 CID S OCID S1 S2 S3
 void read_bush(const BdfEntry& d, BdfDeck& deck, Imported& in) {
-  BdfSpring s{d.name, d.place(), d.integer(0), d.empty(1) ? d.integer(0) : d.integer(1)};
-  for (size_t i = 0; i < 2; ++i) s.grids[i] = d.empty(2 + i) ? 0 : d.integer(2 + i);
+  BdfSpring s{d.name, d.place(), d.integer(0), d.integer(1, d.integer(0))};
+  for (size_t i = 0; i < 2; ++i) s.grids[i] = d.integer(2 + i, 0);
   if (d.name == "CBUSH1D") {
     s.component = {-1, -1};
     if (!d.empty(4)) s.system = d.integer(4);

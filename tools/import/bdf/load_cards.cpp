@@ -36,7 +36,7 @@ void read_mpc(const BdfEntry& d, BdfDeck& deck, Imported&) {
   BdfEquation m{{}, d.place()};
   for (size_t line = 0; 8 * line < d.fields.size(); ++line)  // two terms a line, behind an empty field
     for (const size_t i : {8 * line + 1, 8 * line + 4})
-      if (i < d.fields.size() && !d.empty(i)) m.terms.push_back({d.integer(i), d.empty(i + 1) ? 0 : d.integer(i + 1), d.number(i + 2)});
+      if (i < d.fields.size() && !d.empty(i)) m.terms.push_back({d.integer(i), d.integer(i + 1, 0), d.number(i + 2)});
   deck.ties.lines[d.integer(0)].push_back(m);
 }
 
@@ -54,7 +54,7 @@ void read_force(const BdfEntry& d, BdfDeck& deck, Imported&) {
   if (d.name.back() == '1') {
     l.size = d.number(2), l.towards = {d.integer(3), d.integer(4)};
   } else {
-    l.system = d.empty(2) ? 0 : d.integer(2);
+    l.system = d.integer(2, 0);
     l.size = d.number(3), l.direction = direction_at(d, 4);
   }
   deck.loads.lines[d.integer(0)].push_back(l);
@@ -69,7 +69,7 @@ void read_spcd(const BdfEntry& d, BdfDeck& deck, Imported&) {
 }
 void read_gravity(const BdfEntry& d, BdfDeck& deck, Imported&) {
   BdfLoad l{BdfLoad::Kind::gravity};
-  l.system = d.empty(1) ? 0 : d.integer(1), l.place = d.place();
+  l.system = d.integer(1, 0), l.place = d.place();
   l.size = d.number(2), l.direction = direction_at(d, 3);
   deck.loads.lines[d.integer(0)].push_back(l);
 }
@@ -78,7 +78,7 @@ void read_gravity(const BdfEntry& d, BdfDeck& deck, Imported&) {
 void read_rforce(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (d.number(8) != 0) in.skip("RFORCE: angular acceleration", d.place(8));
   BdfLoad l{BdfLoad::Kind::rotation};
-  l.grid = d.empty(1) ? 0 : d.integer(1), l.system = d.empty(2) ? 0 : d.integer(2), l.place = d.place();
+  l.grid = d.integer(1, 0), l.system = d.integer(2, 0), l.place = d.place();
   l.size = d.number(3), l.direction = direction_at(d, 4);
   deck.loads.lines[d.integer(0)].push_back(l);
 }
@@ -95,9 +95,9 @@ void read_pload4(const BdfEntry& d, BdfDeck& deck, Imported& in) {
       throw Error(d.place(7), fmt::format("PLOAD4: {} THRU {} names no usable range", l.elements[0], last));
     l.ranges = {{l.elements[0], last, 1}}, l.elements.clear();
   } else {
-    l.face = {d.empty(6) ? 0 : d.integer(6), d.empty(7) ? 0 : d.integer(7)};
+    l.face = {d.integer(6, 0), d.integer(7, 0)};
   }
-  l.system = d.empty(8) ? 0 : d.integer(8);
+  l.system = d.integer(8, 0);
   l.direction = vector_at(d, 9);
   for (size_t i = 12; i < 14; ++i)
     if (!d.empty(i) && upper(d.text(i)) != (i == 12 ? "SURF" : "NORM"))
@@ -132,7 +132,7 @@ void read_load(const BdfEntry& d, BdfDeck& deck, Imported&) {
 void read_modes(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   const size_t field = d.name == "EIGRL" ? 3 : 5, band = d.name == "EIGRL" ? 2 : 3;
   d.ignore_rest();  // how they are found and scaled
-  const auto n = d.empty(field) ? 0 : d.integer(field);
+  const auto n = d.integer(field, 0);
   if (n == 0 && !d.empty(band)) in.skip(d.name + " up to a frequency", d.place(band));
   deck.modes[d.integer(0)] = static_cast<int>(std::min<std::int64_t>(std::max<std::int64_t>(n, 0), 1000));
 }

@@ -123,7 +123,10 @@ void resolve_metals(BdfDeck& deck, Imported& in) {
     if (at == deck.materials.end()) throw Error(d.place(0), fmt::format("MATS1 {}: no MAT1 of this number", id));
     DeckMaterial& m = at->second;
     const std::string type = d.empty(2) ? "PLASTIC" : upper(d.text(2));
-    const auto choice = [&](size_t field) { return d.empty(field) ? 1 : d.integer(field) == 0 ? 1 : d.integer(field); };
+    const auto choice = [&](size_t field) {
+      const auto n = d.integer(field, 1);
+      return n == 0 ? 1 : n;
+    };
     if (type != "PLASTIC" && type != "PLSTRN") {
       no_law(m, in, "MATS1, TYPE " + type, d.place(2));
       continue;

@@ -60,7 +60,7 @@ void read_cord1(const BdfEntry& d, BdfDeck& deck, Imported&) {
 /// Three points in another system.
 void read_cord2(const BdfEntry& d, BdfDeck& deck, Imported&) {
   BdfSystem s{kind_of(d), d.place(0)};
-  s.reference = d.empty(1) ? 0 : d.integer(1);
+  s.reference = d.integer(1, 0);
   for (size_t i = 0; i < 9; ++i) s.points[i / 3][static_cast<Eigen::Index>(i % 3)] = d.number(2 + i);
   add_system(deck, d.integer(0), s);
 }
@@ -71,7 +71,7 @@ void add(BdfDeck& deck, BdfDeck::Cell c) {
   deck.cells.push_back(std::move(c));
 }
 /// A property that is left blank has the number of the element.
-std::int64_t property_in(const DataLine& d, size_t field) { return d.empty(field) ? d.integer(0) : d.integer(field); }
+std::int64_t property_in(const DataLine& d, size_t field) { return d.integer(field, d.integer(0)); }
 
 struct SolidKind {
   const char* name;

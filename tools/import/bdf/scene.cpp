@@ -96,9 +96,9 @@ void BdfScene::materials() {
   SceneWriter regions;
   for (const auto& [r, property] : property_of) {
     const std::string& name = m.region_name[static_cast<size_t>(r)];
-    const auto mid = deck_.material_of.find(property);
-    const auto mat = mid == deck_.material_of.end() ? deck_.materials.end() : deck_.materials.find(mid->second);
-    if (mat == deck_.materials.end()) {
+    const auto* mat = deck_.material(property);
+    if (!mat) {
+      const auto mid = deck_.material_of.find(property);
       in_.notes.push_back(mid == deck_.material_of.end()
                               ? fmt::format("region {}: no property {}, so no material", toml_text(name), property)
                               : fmt::format("region {}: no material {}", toml_text(name), mid->second));

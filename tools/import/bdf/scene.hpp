@@ -49,7 +49,6 @@ class BdfScene {
   void beam(const BdfDeck::Thin& b);
   std::vector<double> sections_of(const BdfDeck::Thin& b, double length) const;
   bool nothing_twists(std::int64_t property) const;
-  std::string section_name(std::int64_t property) const;
   // scene_pairs.cpp
   std::string pair_surface(std::int64_t region);
   void pairs();
@@ -145,8 +144,16 @@ class BdfScene {
   std::map<std::int64_t, MadeBeam> made_beams_;                  // by element
   std::map<std::int64_t, std::array<DeckSection, 2>> sections_;  // of beams, by property
   std::vector<std::pair<double, const BdfLoad*>> loads_;
-  std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
-  std::map<std::int64_t, std::string> glue_name_;                        // region -> set
+  struct Sum {
+    Vec3 value = Vec3::Zero();
+    std::string place;  // of the first
+    void add(const Vec3& more, const std::string& where) {
+      value += more;
+      if (place.empty()) place = where;
+    }
+  };
+  std::map<std::int64_t, Sum> force_, moment_;     // by row
+  std::map<std::int64_t, std::string> glue_name_;  // region -> set
   std::map<Rows, std::string> set_by_rows_;
   SceneWriter scene_;
   SceneValue gravity_;

@@ -137,14 +137,14 @@ void BdfScene::rotation_of_bodies() {
       const Mat3 own = axes_at(deck_, std::max<std::int64_t>(m.system, 0), X(a), m.place);
       const Vec3 arm = end(a) != End::body ? Vec3(Vec3::Zero()) : m.system < 0 ? Vec3(m.offset - X(a)) : Vec3(own * m.offset);
       const Vec3 F = m.mass * pull(X(a) + arm);
-      force_.try_emplace(a, Vec3::Zero(), spin.place).first->second.first += F;
+      force_[a].add(F, spin.place);
       const Mat3 J = own * m.inertia * own.transpose();
       if (const Vec3 M = options_.scale * arm.cross(F) - spin.omega.cross(J * spin.omega); end(a) == End::body && M.norm() > 0)
-        moment_.try_emplace(a, Vec3::Zero(), spin.place).first->second.first += M;
+        moment_[a].add(M, spin.place);
     }
     for (const auto& b : deck_.beams) {
       const DeckSection& s = section_of_beam(deck_, b).section;
-      const double rho = deck_.materials.at(deck_.material_of.at(b.property)).data.density;
+      const double rho = deck_.material(b.property)->second.data.density;
       const double mass = (rho > 0 ? rho * s.area(0.3, b.place).A * options_.scale * options_.scale : 0) + s.line_mass;
       const MadeBeam& beam = made_beams_.at(b.id);
       const Vec3 from = mass * pull(beam.start), to = mass * pull(beam.start + beam.length() * beam.axes.col(0));
@@ -161,8 +161,7 @@ void BdfScene::distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const 
   for (const auto& [grid, w] : m.of) points.push_back(X(row(grid, m.place, "RBE3"))), weights.push_back(w);
   const auto shares = shares_of_mean(points, weights, X(row(m.grid, m.place, "RBE3")), F, M / options_.scale);
   if (!shares) return in_.skip("load on an RBE3 that its grids cannot carry", place);
-  for (size_t i = 0; i < points.size(); ++i)
-    force_.try_emplace(row(m.of[i].first, m.place, "RBE3"), Vec3::Zero(), place).first->second.first += (*shares)[i];
+  for (size_t i = 0; i < points.size(); ++i) force_[row(m.of[i].first, m.place, "RBE3")].add((*shares)[i], place);
 }
 
 /// A pressure that varies evenly over a shell, as forces of its grids: the integrals of N_a p over the element as drawn.
@@ -182,8 +181,7 @@ void BdfScene::varying_pressures() {
       for (const auto grid : s->second->nodes) rows.push_back(row(grid, l->place, "PLOAD4")), x.push_back(X(rows.back()));
       const Vec3 way = axes_at(deck_, l->system, x[0], l->place) * l->direction;
       const std::vector<Vec3> f = forces_of_pressure(x, l->at_corners, way);
-      for (size_t i = 0; i < rows.size(); ++i)
-        force_.try_emplace(rows[i], Vec3::Zero(), l->place).first->second.first += factor * options_.scale * options_.scale * f[i];
+      for (size_t i = 0; i < rows.size(); ++i) force_[rows[i]].add(factor * options_.scale * options_.scale * f[i], l->place);
     }
     in_.notes.push_back(fmt::format("{}: PLOAD4 that varies becomes forces of the grids, which do not turn with the shell", l->place));
   }
@@ -225,11 +223,9 @@ void BdfScene::nodal_loads() {
           break;
         }
         [[fallthrough]];
-      case End::body: {
-        const auto [it, fresh] = (force ? force_ : moment_).try_emplace(a, Vec3::Zero(), l->place);
-        it->second.first += v;
+      case End::body:
+        (force ? force_ : moment_)[a].add(v, l->place);
         break;
-      }
       default:
         in_.skip(what + " on a grid of no element", l->place);
     }
@@ -268,10 +264,10 @@ void BdfScene::nodal_loads() {
     scene_.add_unique({"load", "force"}, set, group.second, {{"on", set}, {"force", v * si("N")}, {"per_node", true}});
   }
   for (auto& [a, m] : moment_) {
-    if (is_of_shell(a) && !on_beam_.contains(a) && is_flat(sheets(a)) && drop_drilling(sheets(a), m.first))
-      in_.skip("MOMENT about the normal of a shell, which does not resist it", m.second);
-    if (m.first.norm() > 0)
-      scene_.add_unique({"load", "torque"}, end_name(a) + "_torque", m.second, {{"on", end_name(a)}, {"torque", m.first * si("N m")}});
+    if (is_of_shell(a) && !on_beam_.contains(a) && is_flat(sheets(a)) && drop_drilling(sheets(a), m.value))
+      in_.skip("MOMENT about the normal of a shell, which does not resist it", m.place);
+    if (m.value.norm() > 0)
+      scene_.add_unique({"load", "torque"}, end_name(a) + "_torque", m.place, {{"on", end_name(a)}, {"torque", m.value * si("N m")}});
   }
 }
 
@@ -383,7 +379,7 @@ void BdfScene::pressures() {
 
   using Key = std::pair<std::int64_t, std::int64_t>;
   std::map<Key, std::pair<double, std::string>> pressure;
-  std::map<Key, std::pair<Vec3, std::string>> traction;
+  std::map<Key, Sum> traction;
   std::set<const BdfLoad*> curved;  // said to be so
   for (const auto& [factor, l, f, sign] : pushed) {
     const Key key{f.cell, f.facet};
@@ -397,8 +393,7 @@ void BdfScene::pressures() {
           curved.insert(l).second)
         in_.notes.push_back(
             fmt::format("{}: PLOAD4 in a curved system: its direction on each facet is that at the facet's centre", l->place));
-      traction.try_emplace(key, Vec3::Zero(), l->place).first->second.first +=
-          factor * l->size * (axes_at(deck_, l->system, at, l->place) * l->direction).normalized();
+      traction[key].add(factor * l->size * (axes_at(deck_, l->system, at, l->place) * l->direction).normalized(), l->place);
     } else {
       pressure.try_emplace(key, 0, l->place).first->second.first += factor * l->size * sign;
     }
@@ -408,7 +403,7 @@ void BdfScene::pressures() {
     if (p.first != 0) by_pressure[p.first].first.push_back({key.first, key.second}), by_pressure[p.first].second = p.second;
   std::map<Vec3, std::pair<std::vector<Facet>, std::string>, Vec3Order> by_traction;
   for (const auto& [key, p] : traction)
-    if (p.first.norm() > 0) by_traction[p.first].first.push_back({key.first, key.second}), by_traction[p.first].second = p.second;
+    if (p.value.norm() > 0) by_traction[p.value].first.push_back({key.first, key.second}), by_traction[p.value].second = p.place;
   const auto write = [&](const std::vector<Facet>& facets, const std::string& place, const char* kind, const SceneValue& value) {
     const std::string set = names_.facets(scene_.unique("facets", kind), facets);
     scene_.add_unique({"load", kind}, set, place, {{"on", set}, {kind, value}});

@@ -33,7 +33,6 @@ void read_pbar(const BdfEntry& d, BdfDeck& deck, Imported&) {
   for (size_t i = 8; i < 16; ++i) d.number(i);  // where stresses are asked for
   set_shear(s.section, d.number(16), d.number(17), true);
   add_property(d, deck, s);
-  if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
 /// A taper is even between the ends; tells where stations between them say otherwise.
@@ -82,7 +81,6 @@ void read_pbeam(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (apart && s.section.line_mass != 0) in.skip("PBEAM: NSM off the neutral axis", d.place(line + 8));
   set_shear_centre(s);
   add_property(d, deck, s);
-  if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
 /// Off whose centre of area the shear centre lies.
@@ -249,7 +247,6 @@ void read_shape_of_section(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (s.section.line_mass != 0 && s.section.shear_centre != std::array{0., 0.})
     in.skip("PBEAML: NSM off the neutral axis", d.place(8 + dims.size()));
   add_property(d, deck, s);
-  if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
 }  // namespace

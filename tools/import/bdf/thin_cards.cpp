@@ -13,8 +13,6 @@
 namespace hilo {
 namespace {
 
-std::int64_t property_of(const DataLine& d, size_t field) { return d.empty(field) ? d.integer(0) : d.integer(field); }
-
 void add(BdfDeck& deck, BdfDeck::Thin c, std::vector<BdfDeck::Thin>& to) {
   if (!deck.cell_ids.insert(c.id).second) throw Error(c.place, fmt::format("element {} is given twice", c.id), "number each element once");
   to.push_back(std::move(c));
@@ -23,7 +21,7 @@ void add(BdfDeck& deck, BdfDeck::Thin c, std::vector<BdfDeck::Thin>& to) {
 /// `offset`, `thickness`, `flag`: where a shell entry has its offset, its own thicknesses and what they mean.
 template <size_t corners, size_t middles, size_t offset, size_t thickness, size_t flag>
 void read_shell(const BdfEntry& d, BdfDeck& deck, Imported& in) {
-  BdfDeck::Thin s{{corners == 3 ? tri3 : quad4, d.integer(0), property_of(d, 1), {}, d.place(0)}};
+  BdfDeck::Thin s{{corners == 3 ? tri3 : quad4, d.integer(0), d.integer(1, d.integer(0)), {}, d.place(0)}};
   for (size_t i = 0; i < corners; ++i) s.nodes.push_back(d.integer(2 + i));
   size_t there = 0;
   for (size_t i = 0; i < middles; ++i) there += !d.empty(2 + corners + i);
@@ -64,7 +62,7 @@ void read_orientation(const BdfEntry& d, Beam& b) {
 
 /// EID PID GA GB X1 X2 X3 (or G0) OFFT; PA PB W1A W2A W3A W1B W2B W3B
 void read_beam(const BdfEntry& d, BdfDeck& deck, Imported& in) {
-  BdfDeck::Thin b{{Shape::bar2, d.integer(0), d.empty(1) ? 0 : d.integer(1), {d.integer(2), d.integer(3)}, d.place(0)}};
+  BdfDeck::Thin b{{Shape::bar2, d.integer(0), d.integer(1, 0), {d.integer(2), d.integer(3)}, d.place(0)}};
   b.card = d.name;
   read_orientation(d, b);
   for (size_t k = 0; k < 2; ++k)
@@ -89,7 +87,7 @@ void read_pshell(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   BdfThin s;
   s.thickness = d.number(2);
   s.bends_only = d.empty(1) && !d.empty(3);
-  if (d.empty(3) || (d.integer(3) != (d.empty(1) ? 0 : d.integer(1)) && !s.bends_only))
+  if (d.empty(3) || (d.integer(3) != d.integer(1, 0) && !s.bends_only))
     s.no_solid = "PSHELL with another material in bending, or none";
   else if ((!d.empty(4) && d.number(4) != 1) || !d.empty(10))
     s.no_solid = "PSHELL with 12I/T^3 other than 1, or MID4";
@@ -97,8 +95,7 @@ void read_pshell(const BdfEntry& d, BdfDeck& deck, Imported& in) {
     s.no_solid = "PSHELL with another material in transverse shear";
   if (!d.empty(6) && std::abs(d.number(6) - 5. / 6) > 0.01) in.skip("PSHELL: TS/T, other than 5/6", d.place(6));
   d.ignore_rest();  // where stresses are asked for
-  add_property(d, deck, s);
-  if (!d.empty(1) || s.bends_only) deck.material_of.try_emplace(d.integer(0), d.integer(s.bends_only ? 3 : 1));
+  add_property(d, deck, s, s.bends_only ? 3 : 1);
 }
 
 /// PID Z0 NSM SB FT TREF GE LAM; MID1 T1 THETA1 SOUT1 MID2 T2 ...: a blank MID or T is that of the layer before.
@@ -124,7 +121,7 @@ void read_pcomp(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   s.thickness = layers * sum;
   if (!d.empty(1)) s.offset = d.number(1) + s.thickness / 2;
   if (!same) s.no_solid = "PCOMP of several materials";
-  add_property(d, deck, s);
+  add_property(d, deck, s, std::nullopt);
   if (same)
     deck.material_of.try_emplace(d.integer(0), first);
   else
@@ -133,10 +130,11 @@ void read_pcomp(const BdfEntry& d, BdfDeck& deck, Imported& in) {
 
 }  // namespace
 
-void add_property(const BdfEntry& e, BdfDeck& deck, BdfThin section) {
+void add_property(const BdfEntry& e, BdfDeck& deck, BdfThin section, std::optional<size_t> material) {
   section.place = e.place();
   if (!deck.thin.try_emplace(e.integer(0), section).second)
     throw Error(e.place(0), fmt::format("property {} is given twice", e.integer(0)), "number each property once");
+  if (material && !e.empty(*material)) deck.material_of.try_emplace(e.integer(0), e.integer(*material));
 }
 
 void resolve_beams(BdfDeck& deck) {
@@ -159,11 +157,7 @@ const BdfThin& section_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
 
 BdfBeamPlace place_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
   std::array<std::int64_t, 2> rows;
-  for (size_t k = 0; k < 2; ++k) {
-    const auto at = deck.row.find(b.nodes[k]);
-    if (at == deck.row.end()) throw Error(b.place, fmt::format("element {} names node {}, which does not exist", b.id, b.nodes[k]));
-    rows[k] = at->second;
-  }
+  for (size_t k = 0; k < 2; ++k) rows[k] = deck.row_of(b.nodes[k], b.place, "element", b.id);
   const auto X = [&](size_t k) { return deck.X[static_cast<size_t>(rows[k])]; };
   const auto turned = [&](size_t letter, size_t k, const Vec3& v) -> Vec3 {
     if (v.norm() == 0 || b.axes[letter] == 'B') return v;
@@ -171,11 +165,7 @@ BdfBeamPlace place_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
     return axes_at(deck, g.output.value_or(0), X(k), g.place) * v;
   };
   BdfBeamPlace out{X(0), X(1), turned(0, 0, b.v)};
-  if (b.towards != 0) {
-    const auto grid = deck.row.find(b.towards);
-    if (grid == deck.row.end()) throw Error(b.place, fmt::format("beam {} names node {}, which does not exist", b.id, b.towards));
-    out.up = deck.X[static_cast<size_t>(grid->second)] - X(0);
-  }
+  if (b.towards != 0) out.up = deck.X[static_cast<size_t>(deck.row_of(b.towards, b.place, "beam", b.id))] - X(0);
   const auto offset = [&](size_t letter, size_t k, const Vec3& v) -> Vec3 {
     if (b.axes[letter] != 'O' || v.norm() == 0) return turned(letter, k, v);
     const Vec3 x = X(1) - X(0), z = x.cross(out.up);  // x from grid to grid

@@ -18,12 +18,9 @@ namespace {
 constexpr std::int64_t most_generated = 5'000'000;
 constexpr const char* too_many = "is a number wrong?";
 
-/// A whole number of a line, `fallback` where it is empty.
-std::int64_t whole(const DataLine& l, size_t field, std::int64_t fallback) { return l.empty(field) ? fallback : l.integer(field); }
-
 /// How many, from 1 on.
 std::int64_t count_of(const DataLine& l, size_t field, const char* what) {
-  const auto n = whole(l, field, 1);
+  const auto n = l.integer(field, 1);
   if (n < 1 || n > most_generated) throw Error(l.place(field), fmt::format("{} {}", n, what), fmt::format("1 to {}", most_generated));
   return n;
 }
@@ -47,7 +44,7 @@ const Vec3& place_of(const InpDeck& d, std::int64_t node) { return d.X[static_ca
 
 /// A step of numbers.
 std::int64_t step_of(const DataLine& l, size_t field) {
-  const auto by = whole(l, field, 1);
+  const auto by = l.integer(field, 1);
   if (by < -instance_numbers || by > instance_numbers)
     throw Error(l.place(field), fmt::format("a step of {} between numbers", by), too_many);
   return by;

@@ -186,7 +186,7 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
         add.insert(add.end(), it->second.members.begin(), it->second.members.end());
         continue;
       }
-      const auto first = l.integer(0), last = l.empty(1) ? first : l.integer(1), by = l.empty(2) ? 1 : l.integer(2);
+      const auto first = l.integer(0), last = l.integer(1, first), by = l.integer(2, 1);
       if (by < 1 || last < first || (last - first) / by > 1'000'000'000)
         throw Error(l.place(0), fmt::format("GENERATE: {}, {}, {} names no usable range", first, last, by));
       for (auto i = first; i <= last; i += by) add.push_back(i + shift);

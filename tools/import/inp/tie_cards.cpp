@@ -47,7 +47,7 @@ void read_coupling_kind(InpReading& r) {
   t.undecided = false, t.mean = r.card.key == "DISTRIBUTING";
   bool any = false;
   for (DataLine l; r.lines.next_data(l);) {
-    const auto first = l.integer(0), last = l.empty(1) ? first : l.integer(1);
+    const auto first = l.integer(0), last = l.integer(1, first);
     if (first < 1 || last < first || last > 6)
       throw Error(l.place(0), fmt::format("{}: no degrees of freedom {} to {}", r.card.name, first, last));
     for (auto k = first; k <= last; ++k) t.components |= 1u << (k - 1);
