@@ -187,10 +187,7 @@ Imported read_med(const std::string& path, const ImportOptions& options);
 Imported read_exodus(const std::string& path, const ImportOptions& options);
 Imported read_medit(const std::string& path, const ImportOptions& options);
 Imported read_stl(const std::string& path, const ImportOptions& options);
-Imported read_geo(const std::string& path, const ImportOptions& options);
-Imported read_step(const std::string& path, const ImportOptions& options);
-Imported read_brep(const std::string& path, const ImportOptions& options);
-Imported read_iges(const std::string& path, const ImportOptions& options);
+Imported read_geometry(const std::string& path, const ImportOptions& options);
 
 /// The face of a section of beams, meshed or read, as the text of a .msh file in the unit of the file.  Error where there is no surface.
 std::string face_of(const std::string& path, const ImportOptions& options);

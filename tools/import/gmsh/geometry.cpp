@@ -314,7 +314,44 @@ void tell_off(Imported& in, const std::array<double, 2>& of, const ImportOptions
                                  far ? "warning: " : "", by(of[0]), by(of[1]), would_do));
 }
 
-Imported read_geometry(const std::string& path, const std::string& format, const ImportOptions& options) {
+/// What gmsh calls the format of a file, by the ending of its name; "" where it is no geometry.
+std::string format_of(const std::string& path) {
+  static const std::map<std::string, std::string> formats{{".geo", "geo"},  {".step", "step"}, {".stp", "step"}, {".brep", "brep"},
+                                                          {".brp", "brep"}, {".iges", "iges"}, {".igs", "iges"}};
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto known = formats.find(ending);
+  return known == formats.end() ? "" : known->second;
+}
+
+/// Surfaces as gmsh's text of version 2.2: those of physical groups alone where there is one, as gmsh saves them.
+std::string text_of(const GmshMesh& mesh) {
+  std::string nodes, cells;
+  std::int64_t n = 0;
+  const auto is_surface = [](const auto& e) { return std::get<0>(e.first) == 2; };
+  const bool grouped =
+      std::any_of(mesh.entities.begin(), mesh.entities.end(), [&](const auto& e) { return is_surface(e) && !e.second.groups.empty(); });
+  for (const auto& [key, entity] : mesh.entities) {
+    if (std::get<0>(key) != 2 || (grouped && entity.groups.empty())) continue;
+    for (const GmshMesh::Block& b : entity.blocks) {
+      const size_t per = b.tags.empty() ? 0 : b.nodes.size() / b.tags.size();
+      for (size_t i = 0; i < b.tags.size(); ++i) {
+        cells += fmt::format("{} {} 2 0 {}", ++n, b.type, std::get<1>(key));
+        for (size_t k = 0; k < per; ++k) cells += fmt::format(" {}", b.nodes[per * i + k]);
+        cells += '\n';
+      }
+    }
+  }
+  for (size_t i = 0; i < mesh.X.size(); ++i)
+    nodes += fmt::format("{} {} {} {}\n", mesh.node_tag[i], mesh.X[i].x(), mesh.X[i].y(), mesh.X[i].z());
+  return fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}$EndNodes\n$Elements\n{}\n{}$EndElements\n", mesh.X.size(), nodes,
+                     n, cells);
+}
+
+}  // namespace
+
+Imported read_geometry(const std::string& path, const ImportOptions& options) {
+  const std::string format = format_of(path);
   if (format == "geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
   const auto meshed_with = [&](double per_turn, std::optional<std::array<double, 2>>& of) {
     GmshMesh mesh;
@@ -348,56 +385,22 @@ Imported read_geometry(const std::string& path, const std::string& format, const
   return in;
 }
 
-/// Surfaces as gmsh's text of version 2.2: those of physical groups alone where there is one, as gmsh saves them.
-std::string text_of(const GmshMesh& mesh) {
-  std::string nodes, cells;
-  std::int64_t n = 0;
-  const auto is_surface = [](const auto& e) { return std::get<0>(e.first) == 2; };
-  const bool grouped =
-      std::any_of(mesh.entities.begin(), mesh.entities.end(), [&](const auto& e) { return is_surface(e) && !e.second.groups.empty(); });
-  for (const auto& [key, entity] : mesh.entities) {
-    if (std::get<0>(key) != 2 || (grouped && entity.groups.empty())) continue;
-    for (const GmshMesh::Block& b : entity.blocks) {
-      const size_t per = b.tags.empty() ? 0 : b.nodes.size() / b.tags.size();
-      for (size_t i = 0; i < b.tags.size(); ++i) {
-        cells += fmt::format("{} {} 2 0 {}", ++n, b.type, std::get<1>(key));
-        for (size_t k = 0; k < per; ++k) cells += fmt::format(" {}", b.nodes[per * i + k]);
-        cells += '\n';
-      }
-    }
-  }
-  for (size_t i = 0; i < mesh.X.size(); ++i)
-    nodes += fmt::format("{} {} {} {}\n", mesh.node_tag[i], mesh.X[i].x(), mesh.X[i].y(), mesh.X[i].z());
-  return fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}$EndNodes\n$Elements\n{}\n{}$EndElements\n", mesh.X.size(), nodes,
-                     n, cells);
-}
-
-}  // namespace
-
 std::string face_of(const std::string& path, const ImportOptions& options) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  const std::map<std::string, const char*> formats{{".geo", "geo"},  {".step", "step"}, {".stp", "step"}, {".brep", "brep"},
-                                                   {".brp", "brep"}, {".iges", "iges"}, {".igs", "iges"}};
-  const auto format = formats.find(ending);
-  if (format == formats.end())
+  const std::string format = format_of(path);
+  if (format.empty())
     throw Error(path, "no geometry that a face can be meshed of", "a .geo, .step, .brep or .iges file; a scene names a .msh file itself");
   (void)read_text_file(path);  // says what is wrong with it
-  if (ending == ".geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
+  if (format == "geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
   ImportOptions o = options;
   o.face = true;
   GmshMesh mesh;
   const CrashGuard guard(path, "gmsh");
-  const auto mesh_it = [&] { mesh = meshed(path, format->second, o, o.per_turn.value_or(usual_per_turn)); };
+  const auto mesh_it = [&] { mesh = meshed(path, format, o, o.per_turn.value_or(usual_per_turn)); };
   if (o.trust)
     mesh_it();
   else
     (void)confined(mesh_it);
   return text_of(mesh);
 }
-
-Imported read_geo(const std::string& path, const ImportOptions& options) { return read_geometry(path, "geo", options); }
-Imported read_step(const std::string& path, const ImportOptions& options) { return read_geometry(path, "step", options); }
-Imported read_brep(const std::string& path, const ImportOptions& options) { return read_geometry(path, "brep", options); }
-Imported read_iges(const std::string& path, const ImportOptions& options) { return read_geometry(path, "iges", options); }
 
 }  // namespace hilo

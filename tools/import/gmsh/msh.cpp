@@ -215,11 +215,17 @@ class MshReader {
       for (size_t i = 0; i < n[static_cast<size_t>(dim)]; ++i) {
         const int tag = in_.next<std::int32_t>();
         auto& entity = mesh_.entities[{dim, tag, 0}];
-        for (int x = dim == 0 && version_ > 4 ? 3 : 6; x > 0; --x) in_.next<double>();
-        for (size_t groups = in_.count<std::int64_t>(1); groups > 0; --groups) entity.groups.push_back(group());
-        if (dim > 0)
-          for (size_t bounds = in_.count<std::int64_t>(1); bounds > 0; --bounds) in_.next<std::int32_t>();
+        for (const int g : rest_of_entity(dim)) entity.groups.push_back(g);
       }
+  }
+  /// Where an entity is, its groups, and what bounds it.
+  std::vector<int> rest_of_entity(int dim) {
+    for (int x = dim == 0 && version_ > 4 ? 3 : 6; x > 0; --x) in_.next<double>();
+    std::vector<int> groups;
+    for (size_t k = in_.count<std::int64_t>(1); k > 0; --k) groups.push_back(group());
+    if (dim > 0)
+      for (size_t bounds = in_.count<std::int64_t>(1); bounds > 0; --bounds) in_.next<std::int32_t>();
+    return groups;
   }
 
   /// Entities that gmsh has cut into parts: what is on a part is on the whole.  Borders between parts are of less dimension than what they
@@ -236,13 +242,9 @@ class MshReader {
         part.is_border = of_dim != dim;
         part.of = {dim, part.is_border ? tag : of, part.is_border ? 1 : 0};  // a border is no entity of the model
         for (size_t k = in_.count<std::int64_t>(1); k > 0; --k) part.partitions.push_back(in_.next<std::int32_t>());
-        for (int x = dim == 0 && version_ > 4 ? 3 : 6; x > 0; --x) in_.next<double>();
-        std::vector<int> groups;
-        for (size_t k = in_.count<std::int64_t>(1); k > 0; --k) groups.push_back(std::abs(in_.next<std::int32_t>()));
+        const auto groups = rest_of_entity(dim);
         auto& entity = mesh_.entities[part.of];
         if (entity.groups.empty() && !part.is_border) entity.groups = groups;  // those of the whole, where it is in the file
-        if (dim > 0)
-          for (size_t bounds = in_.count<std::int64_t>(1); bounds > 0; --bounds) in_.next<std::int32_t>();
       }
   }
   /// gmsh may write each part to a file of its own.
