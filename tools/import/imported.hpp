@@ -147,6 +147,8 @@ class SetNames {
  private:
   bool taken(const std::string& name) const;
   std::string free_name(const std::string& name, const std::string& suffix);
+  template <class Members>
+  std::string add(std::map<std::string, Members>& sets, const char* kind, const std::string& name, Members members, const char* suffix);
   Imported& in_;
 };
 
