@@ -6,7 +6,6 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <type_traits>
 
 #include "base/error.hpp"
@@ -69,40 +68,18 @@ class Stream {
     }
     if (at_ < s_.size() && s_[at_] == '\r') ++at_;
     if (at_ < s_.size() && s_[at_] == '\n') ++at_;
-    const auto put = [&]<class U>(U) {
+    static const std::map<std::string, std::string_view> types{
+        {"double", "Float64"},     {"float", "Float32"},         {"int", "Int32"},          {"unsigned_int", "UInt32"},
+        {"long", "Int64"},         {"vtkidtype", "Int64"},       {"vtktypeint64", "Int64"}, {"unsigned_long", "UInt64"},
+        {"short", "Int16"},        {"unsigned_short", "UInt16"}, {"char", "Int8"},          {"signed_char", "Int8"},
+        {"unsigned_char", "UInt8"}};
+    const auto known = types.find(type);
+    if (known == types.end()) fail(fmt::format("unknown type \"{}\"", type));
+    with_vtk_type(known->second, [&]<class U>(U) {
       if (at_ + static_cast<size_t>(n) * sizeof(U) > s_.size()) fail("the file ends in the middle of an array");
-      for (std::int64_t i = 0; i < n; ++i) {
-        unsigned char b[sizeof(U)];
-        for (size_t k = 0; k < sizeof(U); ++k)
-          b[std::endian::native == std::endian::little ? sizeof(U) - 1 - k : k] = static_cast<unsigned char>(s_[at_ + k]);
-        U x;
-        std::memcpy(&x, b, sizeof(U));
-        v.push_back(as<T>(x));
-        at_ += sizeof(U);
-      }
-    };
-    if (type == "double")
-      put(double{});
-    else if (type == "float")
-      put(float{});
-    else if (type == "int")
-      put(std::int32_t{});
-    else if (type == "unsigned_int")
-      put(std::uint32_t{});
-    else if (type == "long" || type == "vtkidtype" || type == "vtktypeint64")
-      put(std::int64_t{});
-    else if (type == "unsigned_long")
-      put(std::uint64_t{});
-    else if (type == "short")
-      put(std::int16_t{});
-    else if (type == "unsigned_short")
-      put(std::uint16_t{});
-    else if (type == "char" || type == "signed_char")
-      put(std::int8_t{});
-    else if (type == "unsigned_char")
-      put(std::uint8_t{});
-    else
-      fail(fmt::format("unknown type \"{}\"", type));
+      for (std::int64_t i = 0; i < n; ++i, at_ += sizeof(U))
+        v.push_back(as<T>(vtk_number<U>(s_.data() + at_, std::endian::native == std::endian::little)));
+    });
     return v;
   }
   [[noreturn]] void fail(const std::string& what) const {

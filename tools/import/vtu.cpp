@@ -209,37 +209,10 @@ class Vtu {
       b = block(t.end, false);
     else
       fail(fmt::format("DataArray format \"{}\" is not read", format));
-    const auto put = [&]<class U>(U) {
-      for (size_t i = 0; i + sizeof(U) <= b.size(); i += sizeof(U)) {
-        char raw[sizeof(U)];
-        for (size_t k = 0; k < sizeof(U); ++k) raw[swap_ ? sizeof(U) - 1 - k : k] = b[i + k];
-        U x;
-        std::memcpy(&x, raw, sizeof(U));
-        v.push_back(static_cast<double>(x));
-      }
-    };
-    if (type == "Float64")
-      put(double{});
-    else if (type == "Float32")
-      put(float{});
-    else if (type == "Int64")
-      put(std::int64_t{});
-    else if (type == "UInt64")
-      put(std::uint64_t{});
-    else if (type == "Int32")
-      put(std::int32_t{});
-    else if (type == "UInt32")
-      put(std::uint32_t{});
-    else if (type == "Int16")
-      put(std::int16_t{});
-    else if (type == "UInt16")
-      put(std::uint16_t{});
-    else if (type == "Int8")
-      put(std::int8_t{});
-    else if (type == "UInt8")
-      put(std::uint8_t{});
-    else
-      fail(fmt::format("DataArray type \"{}\" is not read", type));
+    const bool known = with_vtk_type(type, [&]<class U>(U) {
+      for (size_t i = 0; i + sizeof(U) <= b.size(); i += sizeof(U)) v.push_back(static_cast<double>(vtk_number<U>(&b[i], swap_)));
+    });
+    if (!known) fail(fmt::format("DataArray type \"{}\" is not read", type));
     return v;
   }
 
