@@ -2,6 +2,7 @@
 // Text decks: a line cut into fields that know where they stand, and the numbers in them.
 #pragma once
 #include <cstdint>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,12 @@ struct DataLine {
   std::int64_t integer(size_t field, std::int64_t fallback) const { return empty(field) ? fallback : integer(field); }
   bool is_integer(size_t field) const;
 };
+
+/// The lines of a text.
+inline auto lines_of(std::string_view text) {
+  if (text.ends_with('\n')) text.remove_suffix(1);
+  return text | std::views::split('\n') | std::views::transform([](auto line) { return std::string_view(line.begin(), line.end()); });
+}
 
 /// Upper case, blanks removed.
 std::string upper(std::string_view s);

@@ -25,9 +25,7 @@ std::string without_tabs(const std::string& text) {
   if (text.find('\t') == std::string::npos) return text;
   std::string out;
   out.reserve(text.size() + text.size() / 4);
-  for (size_t from = 0; from < text.size();) {
-    const size_t end = std::min(text.find('\n', from), text.size());
-    const std::string_view l = std::string_view(text).substr(from, end - from);
+  for (const std::string_view l : lines_of(text)) {
     const bool free = l.substr(0, l.find('$')).find(',') != std::string_view::npos;
     const size_t start = out.size();
     for (const char c : l)
@@ -36,7 +34,6 @@ std::string without_tabs(const std::string& text) {
       else
         out.append(free ? 1 : 8 - (out.size() - start) % 8, ' ');
     out += '\n';
-    from = end + 1;
   }
   return out;
 }
@@ -45,12 +42,10 @@ bool starts(std::string_view l, std::string_view word) { return upper(l.substr(0
 
 /// Whether executive and case control stand before the bulk entries.
 bool has_head(std::string_view text) {
-  for (size_t from = 0; from < text.size();) {
-    const size_t end = std::min(text.find('\n', from), text.size());
-    const auto l = strip_blanks(text.substr(from, end - from));
+  for (const std::string_view line : lines_of(text)) {
+    const auto l = strip_blanks(line);
     if (!l.empty() && (l.front() == 'B' || l.front() == 'b') && starts(l, "BEGINBULK")) return true;
     if (!l.empty() && (l.front() == 'C' || l.front() == 'c') && upper(l.substr(0, l.find_first_of(" $\r"))) == "CEND") return true;
-    from = end + 1;
   }
   return false;
 }

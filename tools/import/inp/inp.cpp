@@ -200,13 +200,11 @@ void region_materials(const InpDeck& d, Imported& in, const std::string& file) {
 bool is_nastran(const std::string& path) {
   const std::string text = read_gz(path, "");
   bool bulk = false;
-  for (size_t from = 0; from < text.size();) {
-    const size_t end = std::min(text.find('\n', from), text.size());
-    const std::string line = upper(std::string_view(text).substr(from, std::min<size_t>(end - from, 16)));
+  for (const std::string_view whole : lines_of(text)) {
+    const std::string line = upper(whole.substr(0, 16));
     if (line.starts_with("*") && line.size() > 1 && std::isalpha(static_cast<unsigned char>(line[1]))) return false;
     bulk = bulk || line.starts_with("BEGINBULK") || line.starts_with("GRID,") || line.starts_with("GRID*") ||
            (line.starts_with("GRID") && line.size() > 4 && std::isdigit(static_cast<unsigned char>(line[4])));
-    from = end + 1;
   }
   return bulk;
 }
