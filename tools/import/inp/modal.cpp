@@ -65,10 +65,7 @@ bool replace_supports(InpDeck& d) {
           parts.push_back(part);
           continue;
         }
-        InpNodal below = part, above = part;
-        below.last = later.first - 1, above.first = later.last + 1;
-        if (below.first <= below.last) parts.push_back(below);
-        if (above.first <= above.last) parts.push_back(above);
+        std::ranges::move(without(part, later.first, later.last), std::back_inserter(parts));
       }
       left = parts;
     }

@@ -87,12 +87,9 @@ void move_base(InpDeck& d, Imported& in) {
         continue;
       }
       any = true;
+      std::ranges::move(without(l, m.component, m.component), std::back_inserter(lines));
       InpNodal part = l;
-      part.last = m.component - 1;
-      if (part.first <= part.last) lines.push_back(part);
-      part = l, part.first = m.component + 1;
-      if (part.first <= part.last) lines.push_back(part);
-      part = l, part.first = part.last = m.component;
+      part.first = part.last = m.component;
       part.value = m.scale, part.amplitude = m.amplitude, part.rate = m.rate, part.place = m.place, part.step = m.step;
       lines.push_back(part);
     }

@@ -5,6 +5,8 @@
 
 namespace hilo {
 
+/// What is left of a line without the components from `first` to `last`.
+std::vector<InpNodal> without(const InpNodal& line, int first, int last);
 /// Supports and loads of the first steps become those of one run, with amplitudes over its whole time, and `deck.plan` says what is run:
 /// static steps one behind the other, or what follows from their equilibrium, dynamic steps or modes.  Steps that this cannot say are
 /// named, with what is in them.
