@@ -22,9 +22,9 @@ struct VtkGrid {
 };
 
 /// Legacy .vtk, ASCII or binary, versions up to 5.1.
-VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes);
+VtkGrid read_vtk_legacy(const std::string& path, std::string bytes);
 /// .vtu: ASCII, inline base64 and appended arrays, plain or zlib.
-VtkGrid read_vtu(const std::string& path, const std::string& bytes);
+VtkGrid read_vtu(const std::string& path, std::string bytes);
 
 /// A number out of bytes, in the order of this machine or in the other one.
 template <class U>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <span>
 #include <unordered_map>
@@ -404,6 +405,17 @@ std::vector<GmshMesh::Key> entity_of_nodes(const GmshMesh& mesh) {
     keys.push_back(found == on.end() ? GmshMesh::Key{4, 0, 0} : found->second);
   }
   return keys;
+}
+
+void order_nodes(GmshMesh& mesh, const std::vector<GmshMesh::Key>& on, bool by_number) {
+  std::vector<size_t> order(mesh.node_tag.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, {},
+                           [&](size_t i) { return std::tuple(std::get<0>(on[i]), std::get<1>(on[i]), by_number ? mesh.node_tag[i] : 0); });
+  std::vector<std::int64_t> tags;
+  std::vector<Vec3> X;
+  for (const size_t i : order) tags.push_back(mesh.node_tag[i]), X.push_back(mesh.X[i]);
+  mesh.node_tag = std::move(tags), mesh.X = std::move(X);
 }
 
 Imported imported_from(const std::string& path, const GmshMesh& mesh, const ImportOptions& options, bool curved) {
