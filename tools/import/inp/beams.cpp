@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "base/error.hpp"
-#include "import/inp/ties.hpp"
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 namespace {

@@ -333,45 +333,10 @@ struct InpDeck {
 /// Added to the numbers of nodes of an assembly, and for each of several instances.
 inline constexpr std::int64_t assembly_numbers = 1'000'000'000'000, instance_numbers = 1'000'000'000;
 inline std::int64_t InpDeck::node_shift() const { return in_assembly ? assembly_numbers : shift; }
-/// A qualified name, "ASSEMBLY.TOP" or "PART-1-1.TOP", as the deck's own where that is what it has.
-std::string unqualified(const std::string& name);
-/// Supports, loads, surfaces and sections name sets as the deck has them; numbers behind a dot become numbers.
-void unqualify(InpDeck& deck);
-
 /// The set of this name, new where there is none; one of the part makes room in an assembly.
 InpSet& set_of_cells(const std::string& name, InpDeck& deck);
 InpSet& set_of_nodes(const std::string& name, InpDeck& deck);
 /// The shape of an element type, or an Error at the card that says why there is none.
 Shape inp_shape(const Card& card);
-
-/// Scene lines of the deck's materials, supports and loads (in.scene), and the sets that they name.  `node_set` gives the final name
-/// of a node set of the deck, `surface` that of a surface.
-void write_inp_scene(const InpDeck& deck, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
-                     const std::map<std::string, std::string>& surface, const ImportOptions& options);
-/// Beams as cells of bars; an Error where one has three nodes.
-void beams_as_cells(InpDeck& deck);
-/// Of a beam that begins at `from`: towards a node, or as its section says.
-Vec3 direction_1(const InpDeck& deck, const Mesh& mesh, const InpSection& section, std::int64_t element, const Vec3& from);
-/// The place of a node, of a cell or not; null where there is none.
-const Vec3* point_of(const InpDeck& deck, const Mesh& mesh, std::int64_t node);
-/// Whether a node is of shells that become pairs of nodes.
-bool is_of_pairs(const InpDeck& deck, const Imported& in, std::int64_t node);
-/// A name that no set and no surface of the deck has: the wish, or with _body behind it.
-std::string free_body_name(const InpDeck& deck, std::string wish);
-/// Nodes of beams are bodies.
-void find_beams(InpDeck& deck, Imported& in);
-/// Nodes of shells that pairs of nodes cannot stand for are bodies.
-void find_bodies_of_shells(InpDeck& deck, Imported& in);
-/// Sections, materials, beams and what ties their nodes to solids, as scene lines.
-void write_beams(const InpDeck& deck, Imported& in, SetNames& names, const ImportOptions& options, SceneWriter& scene);
-/// Facets of the deck's faces: the local facet that has the corners of face `face` of an Abaqus element; -1 where there is none.
-int inp_facet(Shape shape, int face);
-/// Rows of the nodes, or cells, that a target names; numbers that no cell uses are left out.
-std::vector<std::int64_t> inp_nodes(const InpDeck& deck, const InpTarget& target);
-std::vector<std::int64_t> inp_cells(const InpDeck& deck, const InpTarget& target);
-/// The numbers of the deck that a target names among such sets, whether they are there or not; none of a set that is not there.
-std::vector<std::int64_t> numbers_in(const std::map<std::string, InpSet>& sets, const InpTarget& target);
-/// The set of a target, by its name or without what qualifies it; Error where there is none.
-const InpSet& set_of(const std::map<std::string, InpSet>& sets, const InpTarget& target, const char* of, bool qualified = true);
 
 }  // namespace hilo

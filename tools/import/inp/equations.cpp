@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/inp/equations.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "import/inp/groups.hpp"
+#include "import/inp/passes.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 

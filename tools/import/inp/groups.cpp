@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/inp/groups.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <tuple>
 
 #include "base/error.hpp"
-#include "import/inp/ties.hpp"
+#include "import/inp/passes.hpp"
 #include "import/sheets.hpp"
 
 namespace hilo {

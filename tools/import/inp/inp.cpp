@@ -8,9 +8,7 @@
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
-#include "import/inp/equations.hpp"
-#include "import/inp/steps.hpp"
-#include "import/inp/ties.hpp"
+#include "import/inp/passes.hpp"
 #include "import/sheets.hpp"
 
 namespace hilo {

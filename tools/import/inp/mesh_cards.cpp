@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
-#include "import/inp/steps.hpp"
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 namespace {

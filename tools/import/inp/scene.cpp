@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "import/inp/ties.hpp"
-
 namespace hilo {
 
 InpScene::InpScene(const InpDeck& d, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "import/inp/groups.hpp"
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 

@@ -7,9 +7,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "import/inp/equations.hpp"
 #include "import/inp/scene.hpp"
-#include "import/inp/ties.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 

@@ -5,9 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "base/error.hpp"
-#include "import/inp/equations.hpp"
 #include "import/inp/scene.hpp"
-#include "import/inp/ties.hpp"
 #include "import/links.hpp"
 
 namespace hilo {

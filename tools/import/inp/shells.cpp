@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "import/inp/equations.hpp"
-#include "import/inp/groups.hpp"
+#include "import/inp/passes.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 

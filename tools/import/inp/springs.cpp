@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A force along one component of a node has a fixed direction.  A body of no mass slides along it (prismatic joint) and the node stays in
 // its plane (in-plane joint), so that the slide is the component.  Two of them, the second on the first, make a difference of components.
-#include "import/inp/springs.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "import/inp/passes.hpp"
 #include "import/links.hpp"
 
 namespace hilo {

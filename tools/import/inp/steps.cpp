@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A load of a step stays in the next ones until it is given anew (OP=MOD) or all of its kind are (OP=NEW).  Without an amplitude it goes
 // in static steps from the value it had to its own, over the step, and has its own at once in dynamic ones [Abaqus, CalculiX].
-#include "import/inp/steps.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 namespace {

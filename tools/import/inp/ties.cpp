@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nodes of no cell that something is tied to become bodies of the scene, or the mean of the nodes they pull.
-#include "import/inp/ties.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "import/inp/equations.hpp"
-#include "import/inp/groups.hpp"
-#include "import/inp/springs.hpp"
+#include "import/inp/passes.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 
