@@ -22,12 +22,12 @@ struct BdfCard {
 using BdfCards = Registry<BdfCard>;
 BdfCards& bdf_cards();
 /// The families, one file each.
-std::span<const BdfCard> bdf_mesh_cards();      // GRID, CORD, solids, rods, shells, properties
-std::span<const BdfCard> bdf_thin_cards();      // shells with their properties, beams
-std::span<const BdfCard> bdf_section_cards();   // sections of beams
-std::span<const BdfCard> bdf_material_cards();  // MAT1 and what goes with it
-std::span<const BdfCard> bdf_load_cards();      // supports, loads, methods
-std::span<const BdfCard> bdf_link_cards();      // rigid elements, masses, springs
+std::vector<BdfCard> bdf_mesh_cards();      // GRID, CORD, solids, rods, shells, properties
+std::vector<BdfCard> bdf_thin_cards();      // shells with their properties, beams
+std::vector<BdfCard> bdf_section_cards();   // sections of beams
+std::vector<BdfCard> bdf_material_cards();  // MAT1 and what goes with it
+std::vector<BdfCard> bdf_load_cards();      // supports, loads, methods
+std::vector<BdfCard> bdf_link_cards();      // rigid elements, masses, springs
 
 /// The material of the number in the first field of an entry, new where none has it yet.
 DeckMaterial& material_of(const BdfEntry& e, BdfDeck& deck);

@@ -207,15 +207,14 @@ void read_bctset(const BdfEntry& d, BdfDeck& deck, Imported&) {
 
 }  // namespace
 
-std::span<const BdfCard> bdf_link_cards() {
-  static constexpr BdfCard cards[] = {
+std::vector<BdfCard> bdf_link_cards() {
+  return {
       {"RBE2", read_rbe2},          {"RBAR", read_rbar},     {"RBAR1", read_rbar1},   {"RROD", read_rrod},     {"RBE3", read_rbe3},
       {"CONM2", read_conm2},        {"CELAS1", read_scalar}, {"CELAS2", read_scalar}, {"CDAMP1", read_scalar}, {"CDAMP2", read_scalar},
       {"CBUSH", read_bush},         {"CBUSH1D", read_bush},  {"PELAS", read_pelas},   {"PDAMP", read_pelas},   {"PBUSH", read_pbush},
       {"PBUSH1D", read_pbush1d},    {"BSURFS", read_bsurfs}, {"BGSET", read_bgset},   {"BCTSET", read_bctset}, {"CMASS1", read_scalar_mass},
       {"CMASS2", read_scalar_mass}, {"PMASS", read_pmass},
   };
-  return cards;
 }
 
 }  // namespace hilo

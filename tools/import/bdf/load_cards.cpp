@@ -164,8 +164,8 @@ void read_pload1(const BdfEntry& d, BdfDeck& deck, Imported& in) {
 
 }  // namespace
 
-std::span<const BdfCard> bdf_load_cards() {
-  static constexpr BdfCard cards[] = {
+std::vector<BdfCard> bdf_load_cards() {
+  return {
       {"SPC1", read_spc1},
       {"SPC", read_spc},
       {"SPCD", read_spcd},
@@ -189,7 +189,6 @@ std::span<const BdfCard> bdf_load_cards() {
       {"BGADD", read_sum<&BdfDeck::glue>},
       {"BCTADD", read_sum<&BdfDeck::contacts>},
   };
-  return cards;
 }
 
 }  // namespace hilo

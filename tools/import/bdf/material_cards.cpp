@@ -183,11 +183,9 @@ void resolve_metals(BdfDeck& deck, Imported& in) {
   }
 }
 
-std::span<const BdfCard> bdf_material_cards() {
-  static constexpr BdfCard cards[] = {{"MAT1", read_mat1},    {"MATS1", read_mats1}, {"TABLES1", read_tables1}, {"MATHP", read_mathp},
-                                      {"MAT3", read_other},   {"MAT8", read_mat8},   {"MAT9", read_other},      {"MAT11", read_other},
-                                      {"MATORT", read_other}, {"MATHE", read_other}};
-  return cards;
+std::vector<BdfCard> bdf_material_cards() {
+  return {{"MAT1", read_mat1}, {"MATS1", read_mats1}, {"TABLES1", read_tables1}, {"MATHP", read_mathp},  {"MAT3", read_other},
+          {"MAT8", read_mat8}, {"MAT9", read_other},  {"MAT11", read_other},     {"MATORT", read_other}, {"MATHE", read_other}};
 }
 
 }  // namespace hilo

@@ -189,8 +189,8 @@ void axisymmetric(const BdfEntry& e, BdfDeck&, Imported&) { refuse_card(e, "axis
 
 }  // namespace
 
-std::span<const BdfCard> bdf_mesh_cards() {
-  static constexpr BdfCard cards[] = {
+std::vector<BdfCard> bdf_mesh_cards() {
+  return {
       {"GRID", read_grid},      {"GRDSET", read_grid_default}, {"CORD1R", read_cord1},      {"CORD1C", read_cord1},
       {"CORD1S", read_cord1},   {"CORD2R", read_cord2},        {"CORD2C", read_cord2},      {"CORD2S", read_cord2},
       {"CTETRA", read_solid},   {"CPENTA", read_solid},        {"CHEXA", read_solid},       {"CROD", read_rod},
@@ -198,7 +198,6 @@ std::span<const BdfCard> bdf_mesh_cards() {
       {"CTUBE", read_rod},      {"PTUBE", read_pipe},          {"CPYRAM", read_pyramid},    {"CTRAX3", axisymmetric},
       {"CTRAX6", axisymmetric},
   };
-  return cards;
 }
 
 }  // namespace hilo

@@ -251,14 +251,13 @@ void read_shape_of_section(const BdfEntry& d, BdfDeck& deck, Imported& in) {
 
 }  // namespace
 
-std::span<const BdfCard> bdf_section_cards() {
-  static constexpr BdfCard cards[] = {
+std::vector<BdfCard> bdf_section_cards() {
+  return {
       {"PBAR", read_pbar},
       {"PBEAM", read_pbeam},
       {"PBARL", read_shape_of_section},
       {"PBEAML", read_shape_of_section},
   };
-  return cards;
 }
 
 }  // namespace hilo

@@ -224,8 +224,8 @@ void add_thin_cell(const BdfDeck& deck, const BdfDeck::Thin& c, std::span<const 
   in.mesh.add_cell(c.shape, rows, -1, c.id);
 }
 
-std::span<const BdfCard> bdf_thin_cards() {
-  static constexpr BdfCard cards[] = {
+std::vector<BdfCard> bdf_thin_cards() {
+  return {
       {"CTRIA3", read_shell<3, 0, 6, 10, 9>},
       {"CTRIAR", read_shell<3, 0, 6, 10, 9>},
       {"CTRIA6", read_shell<3, 3, 9, 10, 13>},
@@ -239,7 +239,6 @@ std::span<const BdfCard> bdf_thin_cards() {
       {"PSHELL", read_pshell},
       {"PCOMP", read_pcomp},
   };
-  return cards;
 }
 
 }  // namespace hilo

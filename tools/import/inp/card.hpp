@@ -4,9 +4,9 @@
 #pragma once
 #include <initializer_list>
 #include <map>
-#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/registry.hpp"
 #include "import/inp/deck.hpp"
@@ -38,16 +38,16 @@ struct InpCard {
 using InpCards = Registry<InpCard>;
 
 /// The families, one file each.
-std::span<const InpCard> inp_mesh_cards();      // *NODE, *ELEMENT, sets, surfaces
-std::span<const InpCard> inp_generate_cards();  // *NGEN, *NFILL, *ELGEN
-std::span<const InpCard> inp_material_cards();  // *MATERIAL and what follows it, sections
-std::span<const InpCard> inp_load_cards();      // supports, loads, histories
-std::span<const InpCard> inp_motion_cards();    // *BASE MOTION
-std::span<const InpCard> inp_tie_cards();       // couplings, rigid bodies, masses, springs
-std::span<const InpCard> inp_contact_cards();   // contact pairs, and what happens between them
-std::span<const InpCard> inp_step_cards();      // heading, parts, steps, procedures
-std::span<const InpCard> inp_modal_cards();     // what sums modes
-std::span<const InpCard> inp_unread_cards();    // requests for output, and cards without which the mesh would be another
+std::vector<InpCard> inp_mesh_cards();      // *NODE, *ELEMENT, sets, surfaces
+std::vector<InpCard> inp_generate_cards();  // *NGEN, *NFILL, *ELGEN
+std::vector<InpCard> inp_material_cards();  // *MATERIAL and what follows it, sections
+std::vector<InpCard> inp_load_cards();      // supports, loads, histories
+std::vector<InpCard> inp_motion_cards();    // *BASE MOTION
+std::vector<InpCard> inp_tie_cards();       // couplings, rigid bodies, masses, springs
+std::vector<InpCard> inp_contact_cards();   // contact pairs, and what happens between them
+std::vector<InpCard> inp_step_cards();      // heading, parts, steps, procedures
+std::vector<InpCard> inp_modal_cards();     // what sums modes
+std::vector<InpCard> inp_unread_cards();    // requests for output, and cards without which the mesh would be another
 /// All of them.
 InpCards& inp_cards();
 

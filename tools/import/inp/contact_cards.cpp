@@ -109,8 +109,8 @@ void read_general(InpReading& r) {
 
 }  // namespace
 
-std::span<const InpCard> inp_contact_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_contact_cards() {
+  return {
       {"CONTACTPAIR", read_contact_pair, true},
       {"SURFACEINTERACTION", read_interaction, true},
       {"SURFACEBEHAVIOR", read_behavior, true},
@@ -119,7 +119,6 @@ std::span<const InpCard> inp_contact_cards() {
       {"CONTACTINCLUSIONS", read_inclusions, true},
       {"CONTACTPROPERTYASSIGNMENT", read_assignment, true},
   };
-  return cards;
 }
 
 }  // namespace hilo

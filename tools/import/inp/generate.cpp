@@ -400,10 +400,8 @@ void read_elcopy(InpReading& r) {
 
 }  // namespace
 
-std::span<const InpCard> inp_generate_cards() {
-  static constexpr InpCard cards[] = {
-      {"NGEN", read_ngen}, {"NFILL", read_nfill}, {"ELGEN", read_elgen}, {"NCOPY", read_ncopy}, {"ELCOPY", read_elcopy}};
-  return cards;
+std::vector<InpCard> inp_generate_cards() {
+  return {{"NGEN", read_ngen}, {"NFILL", read_nfill}, {"ELGEN", read_elgen}, {"NCOPY", read_ncopy}, {"ELCOPY", read_elcopy}};
 }
 
 }  // namespace hilo

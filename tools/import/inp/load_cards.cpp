@@ -182,13 +182,12 @@ void read_amplitude(InpReading& r) {
 
 }  // namespace
 
-std::span<const InpCard> inp_load_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_load_cards() {
+  return {
       {"BOUNDARY", read_supports, false, true},  {"CLOAD", read_forces, false, true},       {"DLOAD", read_distributed, false, true},
       {"DSLOAD", read_distributed, false, true}, {"INITIALCONDITIONS", read_initial, true}, {"AMPLITUDE", read_amplitude},
       {"TRANSFORM", read_transform, true},
   };
-  return cards;
 }
 
 }  // namespace hilo

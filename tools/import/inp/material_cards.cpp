@@ -380,8 +380,8 @@ void read_general_section(InpReading& r) {
 
 }  // namespace
 
-std::span<const InpCard> inp_material_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_material_cards() {
+  std::vector<InpCard> cards{
       {"MATERIAL", read_material},
       {"ELASTIC", read_elastic},
       {"DENSITY", read_density},
@@ -395,16 +395,10 @@ std::span<const InpCard> inp_material_cards() {
       {"RATEDEPENDENT", read_rates},
       {"HYPERELASTIC", read_rubber},
       {"ORIENTATION", read_orientation},
-      {"CYCLICHARDENING", read_no_law},
-      {"CREEP", read_no_law},
-      {"DEFORMATIONPLASTICITY", read_no_law},
-      {"DRUCKERPRAGER", read_no_law},
-      {"MOHRCOULOMB", read_no_law},
-      {"VISCOELASTIC", read_no_law},
-      {"HYPERFOAM", read_no_law},
-      {"USERMATERIAL", read_no_law},
-      {"POTENTIAL", read_no_law},
   };
+  for (const char* name : {"CYCLICHARDENING", "CREEP", "DEFORMATIONPLASTICITY", "DRUCKERPRAGER", "MOHRCOULOMB", "VISCOELASTIC", "HYPERFOAM",
+                           "USERMATERIAL", "POTENTIAL"})
+    cards.push_back({name, read_no_law});
   return cards;
 }
 

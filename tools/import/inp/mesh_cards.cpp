@@ -350,8 +350,8 @@ int inp_facet(Shape shape, int face) {
   return -1;
 }
 
-std::span<const InpCard> inp_mesh_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_mesh_cards() {
+  return {
       {"NODE", [](InpReading& r) { read_nodes(r.card, r.lines, r.deck, r.in); }},
       {"SYSTEM", read_system},
       {"ELEMENT", read_elements},
@@ -359,7 +359,6 @@ std::span<const InpCard> inp_mesh_cards() {
       {"ELSET", [](InpReading& r) { read_set(r.card, "ELSET", r.lines, r.deck.elset, r.deck.elset_order, r.deck); }},
       {"SURFACE", [](InpReading& r) { read_surface(r.card, r.lines, r.deck, r.in); }},
   };
-  return cards;
 }
 
 }  // namespace hilo

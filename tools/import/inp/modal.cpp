@@ -139,13 +139,12 @@ void take_modal(InpDeck& d, Imported& in) {
   d.steps[0] = s;
 }
 
-std::span<const InpCard> inp_modal_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_modal_cards() {
+  return {
       {"MODALDYNAMIC", read_modal, false, true},
       {"STEADYSTATEDYNAMICS", read_modal, false, true},
       {"MODALDAMPING", read_modal_damping, false, true},
   };
-  return cards;
 }
 
 }  // namespace hilo

@@ -136,9 +136,6 @@ void find_motions(InpDeck& d, Imported& in) {
   d.supports = std::move(lines);
 }
 
-std::span<const InpCard> inp_motion_cards() {
-  static constexpr InpCard cards[] = {{"BASEMOTION", read_base_motion, false, true}};
-  return cards;
-}
+std::vector<InpCard> inp_motion_cards() { return {{"BASEMOTION", read_base_motion, false, true}}; }
 
 }  // namespace hilo

@@ -170,8 +170,8 @@ InpStep& step_of(InpReading& r) {
   return r.deck.steps.back();
 }
 
-std::span<const InpCard> inp_step_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_step_cards() {
+  std::vector<InpCard> cards{
       {"HEADING", read_heading},
       {"PARAMETER", read_parameter},
       {"PART", read_part},
@@ -185,24 +185,12 @@ std::span<const InpCard> inp_step_cards() {
       {"STATIC", read_procedure, false, true},
       {"DYNAMIC", read_procedure, false, true},
       {"FREQUENCY", read_modes, false, true},
-      {"COMPLEXFREQUENCY", other_procedure, false, true},
       {"BUCKLE", read_modes, false, true},
-      {"HEATTRANSFER", other_procedure, false, true},
-      {"VISCO", other_procedure, false, true},
-      {"COUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},
-      {"UNCOUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},
-      {"CFD", other_procedure, false, true},
-      {"ELECTROMAGNETICS", other_procedure, false, true},
-      {"SENSITIVITY", other_procedure, false, true},
-      {"GREEN", other_procedure, false, true},
-      {"NOANALYSIS", other_procedure, false, true},
-      {"SUBSTRUCTUREGENERATE", other_procedure, false, true},
-      {"GEOSTATIC", other_procedure, false, true},
-      {"RANDOMRESPONSE", other_procedure, false, true},
-      {"CRACKPROPAGATION", other_procedure, false, true},
-      {"ROBUSTDESIGN", other_procedure, false, true},
-      {"FEASIBLEDIRECTION", other_procedure, false, true},
   };
+  for (const char* name : {"COMPLEXFREQUENCY", "HEATTRANSFER", "VISCO", "COUPLEDTEMPERATURE-DISPLACEMENT",
+                           "UNCOUPLEDTEMPERATURE-DISPLACEMENT", "CFD", "ELECTROMAGNETICS", "SENSITIVITY", "GREEN", "NOANALYSIS",
+                           "SUBSTRUCTUREGENERATE", "GEOSTATIC", "RANDOMRESPONSE", "CRACKPROPAGATION", "ROBUSTDESIGN", "FEASIBLEDIRECTION"})
+    cards.push_back({name, other_procedure, false, true});
   return cards;
 }
 

@@ -199,8 +199,8 @@ bool read_points(InpReading& r, const std::string& type) {
   return true;
 }
 
-std::span<const InpCard> inp_tie_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_tie_cards() {
+  return {
       {"COUPLING", read_coupling},
       {"KINEMATIC", read_coupling_kind},
       {"DISTRIBUTING", read_coupling_kind},
@@ -213,7 +213,6 @@ std::span<const InpCard> inp_tie_cards() {
       {"SPRING", read_value},
       {"DASHPOT", read_value},
   };
-  return cards;
 }
 
 }  // namespace hilo
