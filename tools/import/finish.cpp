@@ -42,6 +42,11 @@ void renumber(Imported& in, const std::vector<std::int64_t>& row, std::int64_t n
 
 }  // namespace
 
+void replace_cells(Mesh& m, Mesh&& cells) {
+  m.shape = std::move(cells.shape), m.offset = std::move(cells.offset), m.nodes = std::move(cells.nodes);
+  m.region = std::move(cells.region), m.cell_id = std::move(cells.cell_id);
+}
+
 std::int64_t merge_nodes(Imported& in, double distance) {
   const Mesh& m = in.mesh;
   const auto n = m.n_nodes();

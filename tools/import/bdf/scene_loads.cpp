@@ -322,9 +322,7 @@ Facet BdfScene::face_of_solid(const BdfLoad& l, std::int64_t element) const {
   };
   const int one = local(l.face[0]), other = local(l.face[1]);
   for (size_t i = 0; i < s.facets.size() && s.dimension == 3 && one >= 0 && (other >= 0 || !l.face[1]); ++i) {
-    std::vector<int> of;
-    for (const int a : s.facets[i])
-      if (a < s.n_corners) of.push_back(a);
+    const std::vector<int> of = facet_corners(s, i);
     const auto has = [&](int a) { return std::find(of.begin(), of.end(), a) - of.begin(); };
     const auto n = static_cast<std::ptrdiff_t>(of.size());
     if (has(one) == n) continue;

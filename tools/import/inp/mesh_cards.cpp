@@ -341,10 +341,8 @@ int inp_facet(Shape shape, int face) {
   const auto& faces = known->second;
   if (face < 1 || face > static_cast<int>(faces.size())) return -1;
   for (size_t f = 0; f < s.facets.size(); ++f) {
-    std::vector<int> corners;
-    for (const int a : s.facets[f])
-      if (a < s.n_corners) corners.push_back(a);
-    std::sort(corners.begin(), corners.end());
+    auto corners = facet_corners(s, f);
+    std::ranges::sort(corners);
     if (corners == faces[face - 1]) return static_cast<int>(f);
   }
   return -1;
