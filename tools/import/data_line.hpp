@@ -55,6 +55,9 @@ inline auto lines_of(std::string_view text) {
   return text | std::views::split('\n') | std::views::transform([](auto line) { return std::string_view(line.begin(), line.end()); });
 }
 
+/// A text without the blanks at its ends.
+std::string_view strip(std::string_view s);
+
 /// Upper case, blanks removed.
 std::string upper(std::string_view s);
 

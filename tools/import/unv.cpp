@@ -180,8 +180,7 @@ class UnvReader {
       GroupedMesh::Group g;
       const auto number = l_.integer(0), count = l_.integer(7);
       must();
-      const auto first = raw_.find_first_not_of(' '), last = raw_.find_last_not_of(' ');
-      g.name = first == std::string_view::npos ? fmt::format("group_{}", number) : std::string(raw_.substr(first, last - first + 1));
+      g.name = strip(raw_).empty() ? fmt::format("group_{}", number) : std::string(strip(raw_));
       for (std::int64_t got = 0; got < count;) {
         must();
         for (size_t i = 0; i + 1 < l_.fields.size(); i += width, ++got) {

@@ -296,6 +296,19 @@ GmshMesh meshed(const std::string& path, const std::string& format, const Import
               "try another --size, or repair the geometry");
 }
 
+/// The same, where gmsh may crash and a script that is not trusted may read files alone; `note` says where the kernel cannot hold it.
+GmshMesh guarded_mesh(const std::string& path, const std::string& format, const ImportOptions& options, double per_turn,
+                      std::string& note) {
+  GmshMesh mesh;
+  const CrashGuard guard(path, "gmsh");
+  const auto mesh_it = [&] { mesh = meshed(path, format, options, per_turn); };
+  if (options.trust)
+    mesh_it();
+  else
+    note = confined(mesh_it);
+  return mesh;
+}
+
 /// What of a mesh is told beside its solids, and what would bring it nearer where it is far.
 void tell_off(Imported& in, const std::array<double, 2>& of, const ImportOptions& o, double per_turn, bool script) {
   const auto by = [](double x) {
@@ -354,16 +367,8 @@ Imported read_geometry(const std::string& path, const ImportOptions& options) {
   const std::string format = format_of(path);
   if (format == "geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
   const auto meshed_with = [&](double per_turn, std::optional<std::array<double, 2>>& of) {
-    GmshMesh mesh;
     std::string note;
-    {
-      const CrashGuard guard(path, "gmsh");
-      const auto mesh_it = [&] { mesh = meshed(path, format, options, per_turn); };
-      if (options.trust)
-        mesh_it();
-      else
-        note = confined(mesh_it);
-    }
+    const GmshMesh mesh = guarded_mesh(path, format, options, per_turn, note);
     Imported in = imported_from(path, mesh, options, options.order == 2);
     if (!note.empty()) in.notes.push_back(note);
     of.reset();
@@ -393,14 +398,8 @@ std::string face_of(const std::string& path, const ImportOptions& options) {
   if (format == "geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
   ImportOptions o = options;
   o.face = true;
-  GmshMesh mesh;
-  const CrashGuard guard(path, "gmsh");
-  const auto mesh_it = [&] { mesh = meshed(path, format, o, o.per_turn.value_or(usual_per_turn)); };
-  if (o.trust)
-    mesh_it();
-  else
-    (void)confined(mesh_it);
-  return text_of(mesh);
+  std::string note;
+  return text_of(guarded_mesh(path, format, o, o.per_turn.value_or(usual_per_turn), note));
 }
 
 }  // namespace hilo

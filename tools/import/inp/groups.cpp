@@ -253,6 +253,14 @@ std::vector<std::int64_t> numbers_in(const std::map<std::string, InpSet>& sets, 
   return set == sets.end() ? Rows{} : set->second.members;
 }
 
+std::vector<const InpSection*> section_of_cells(const InpDeck& d) {
+  std::vector<const InpSection*> of(d.shape.size(), nullptr);
+  for (const auto& s : d.sections)
+    for (const auto id : d.elset.at(s.elset).members)
+      if (const auto c = d.cell.find(id); c != d.cell.end()) of[static_cast<size_t>(c->second)] = &s;
+  return of;
+}
+
 const Vec3* point_of(const InpDeck& d, const Mesh& mesh, std::int64_t node) {
   if (const auto a = d.node.find(node); a != d.node.end()) return &mesh.X[static_cast<size_t>(a->second)];
   const auto x = d.loose.find(node);

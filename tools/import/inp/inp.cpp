@@ -172,18 +172,16 @@ std::vector<std::int64_t> rows(const InpSet& s, const std::unordered_map<std::in
 /// The material of every cell goes to the data of its region.
 void region_materials(const InpDeck& d, Imported& in, const std::string& file) {
   Mesh& m = in.mesh;
-  std::vector<const DeckMaterial*> of_cell(m.shape.size(), nullptr), of_region(m.region_name.size(), nullptr);
-  for (const auto& s : d.sections)
-    for (const auto id : d.elset.at(s.elset).members)
-      if (const auto c = d.cell.find(id); c != d.cell.end()) of_cell[c->second] = &d.laws.at(s.law);
+  std::vector<const DeckMaterial*> of_region(m.region_name.size(), nullptr);
+  const auto section = section_of_cells(d);
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
     const auto*& r = of_region[m.region[c]];
-    if (r && of_cell[c] && r != of_cell[c])
-      throw Error(
-          file,
-          fmt::format("region \"{}\" holds cells of materials \"{}\" and \"{}\"", m.region_name[m.region[c]], r->name, of_cell[c]->name),
-          "choose --regions within one material");
-    if (of_cell[c]) r = of_cell[c];
+    const DeckMaterial* law = section[c] ? &d.laws.at(section[c]->law) : nullptr;
+    if (r && law && r != law)
+      throw Error(file,
+                  fmt::format("region \"{}\" holds cells of materials \"{}\" and \"{}\"", m.region_name[m.region[c]], r->name, law->name),
+                  "choose --regions within one material");
+    if (law) r = law;
   }
   for (size_t r = 0; r < of_region.size(); ++r)
     if (of_region[r]) {

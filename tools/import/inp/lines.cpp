@@ -12,12 +12,6 @@
 namespace hilo {
 namespace {
 
-std::string_view strip(std::string_view s) {
-  while (!s.empty() && std::isspace(static_cast<unsigned char>(s.front()))) s.remove_prefix(1);
-  while (!s.empty() && std::isspace(static_cast<unsigned char>(s.back()))) s.remove_suffix(1);
-  return s;
-}
-
 /// Cut at commas outside double quotes.
 void cut(std::string_view line, std::vector<DataField>& fields) {
   fields.clear();

@@ -25,6 +25,8 @@ std::vector<std::int64_t> inp_cells(const InpDeck& deck, const InpTarget& target
 const Vec3* point_of(const InpDeck& deck, const Mesh& mesh, std::int64_t node);
 /// Whether a node is of shells that become pairs of nodes.
 bool is_of_pairs(const InpDeck& deck, const Imported& in, std::int64_t node);
+/// The section of each cell, the last one that has it; null where none has.
+std::vector<const InpSection*> section_of_cells(const InpDeck& deck);
 /// Facets of the deck's faces: the local facet that has the corners of face `face` of an Abaqus element; -1 where there is none.
 int inp_facet(Shape shape, int face);
 

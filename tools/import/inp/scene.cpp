@@ -74,10 +74,7 @@ void InpScene::materials() {
   const Mesh& m = in_.mesh;
   std::vector<SceneWriter> regions(m.region_name.size());
   std::vector<int> seen(m.region_name.size(), 0);
-  std::vector<const InpSection*> of_cell(m.shape.size(), nullptr);  // the last section that has it, as in region_materials()
-  for (const auto& s : d_.sections)
-    for (const auto id : d_.elset.at(s.elset).members)
-      if (const auto c = d_.cell.find(id); c != d_.cell.end()) of_cell[c->second] = &s;
+  const auto of_cell = section_of_cells(d_);
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
     const auto r = m.region[c];
     if (!of_cell[c] || seen[r]++) continue;
