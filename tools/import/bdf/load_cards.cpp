@@ -48,39 +48,41 @@ Vec3 direction_at(const BdfEntry& e, size_t field) {
   return v;
 }
 
+/// Behind the others of its set.
+BdfLoad& new_load(const BdfEntry& d, BdfDeck& deck, BdfLoad::Kind kind) {
+  BdfLoad& l = deck.loads.lines[d.integer(0)].emplace_back(BdfLoad{kind});
+  l.place = d.place();
+  return l;
+}
+
 void read_force(const BdfEntry& d, BdfDeck& deck, Imported&) {
-  BdfLoad l{d.name.front() == 'F' ? BdfLoad::Kind::force : BdfLoad::Kind::moment};
-  l.grid = d.integer(1), l.place = d.place();
+  BdfLoad& l = new_load(d, deck, d.name.front() == 'F' ? BdfLoad::Kind::force : BdfLoad::Kind::moment);
+  l.grid = d.integer(1);
   if (d.name.back() == '1') {
     l.size = d.number(2), l.towards = {d.integer(3), d.integer(4)};
   } else {
     l.system = d.integer(2, 0);
     l.size = d.number(3), l.direction = direction_at(d, 4);
   }
-  deck.loads.lines[d.integer(0)].push_back(l);
 }
 void read_spcd(const BdfEntry& d, BdfDeck& deck, Imported&) {
   for (size_t i = 1; i < 7; i += 3)
     if (!d.empty(i)) {
-      BdfLoad l{BdfLoad::Kind::displacement};
-      l.grid = d.integer(i), l.components = components(d, i + 1), l.size = d.number(i + 2), l.place = d.place();
-      deck.loads.lines[d.integer(0)].push_back(l);
+      BdfLoad& l = new_load(d, deck, BdfLoad::Kind::displacement);
+      l.grid = d.integer(i), l.components = components(d, i + 1), l.size = d.number(i + 2);
     }
 }
 void read_gravity(const BdfEntry& d, BdfDeck& deck, Imported&) {
-  BdfLoad l{BdfLoad::Kind::gravity};
-  l.system = d.integer(1, 0), l.place = d.place();
-  l.size = d.number(2), l.direction = direction_at(d, 3);
-  deck.loads.lines[d.integer(0)].push_back(l);
+  BdfLoad& l = new_load(d, deck, BdfLoad::Kind::gravity);
+  l.system = d.integer(1, 0), l.size = d.number(2), l.direction = direction_at(d, 3);
 }
 
 /// SID G CID A R1 R2 R3 METHOD RACC: the whole turns about an axis through a grid.
 void read_rforce(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (d.number(8) != 0) in.skip("RFORCE: angular acceleration", d.place(8));
-  BdfLoad l{BdfLoad::Kind::rotation};
-  l.grid = d.integer(1, 0), l.system = d.integer(2, 0), l.place = d.place();
+  BdfLoad& l = new_load(d, deck, BdfLoad::Kind::rotation);
+  l.grid = d.integer(1, 0), l.system = d.integer(2, 0);
   l.size = d.number(3), l.direction = direction_at(d, 4);
-  deck.loads.lines[d.integer(0)].push_back(l);
 }
 
 /// Pressure on a face of a solid, or on a shell: SID EID P1 P2 P3 P4 G1 G3|G4, or SID EID P1 - - - THRU EID2; then CID N1 N2 N3 SORL LDIR.
@@ -106,19 +108,17 @@ void read_pload4(const BdfEntry& d, BdfDeck& deck, Imported& in) {
 }
 /// SID P and three or four grids, positive along the normal that they turn about.
 void read_pload(const BdfEntry& d, BdfDeck& deck, Imported&) {
-  BdfLoad l{BdfLoad::Kind::pressure};
-  l.place = d.place(), l.size = d.number(1);
+  BdfLoad& l = new_load(d, deck, BdfLoad::Kind::pressure);
+  l.size = d.number(1);
   for (size_t i = 2; i < 6; ++i)
     if (!d.empty(i)) l.corners.push_back(d.integer(i));
   if (l.corners.size() < 3) throw Error(d.place(), "PLOAD names three or four grids");
-  deck.loads.lines[d.integer(0)].push_back(std::move(l));
 }
 /// SID P and shells.
 void read_pload2(const BdfEntry& d, BdfDeck& deck, Imported&) {
-  BdfLoad l{BdfLoad::Kind::pressure};
-  l.place = d.place(), l.size = d.number(1);
+  BdfLoad& l = new_load(d, deck, BdfLoad::Kind::pressure);
+  l.size = d.number(1);
   grid_list(d, 2, l.elements, l.ranges);
-  deck.loads.lines[d.integer(0)].push_back(std::move(l));
 }
 
 void read_load(const BdfEntry& d, BdfDeck& deck, Imported&) {

@@ -103,6 +103,59 @@ Vec3 mean_of(const InpDeck& d, const InpTie& t, const std::map<std::int64_t, dou
   return n > 0 ? Vec3(sum / n) : sum;
 }
 
+/// `w`: the nodes of cells that it takes, with weights; `ref`: its reference node.
+void find_tie(InpDeck& d, Imported& in, const InpTie& t, std::map<std::int64_t, double> w, std::int64_t ref) {
+  if (t.undecided) return in.skip(t.name + " without *KINEMATIC or *DISTRIBUTING", t.place);
+  if (d.node.contains(ref) && !d.bodies.contains(ref)) return in.skip(t.name + " whose reference node is a node of a cell", t.place);
+  if (in.sheets && !t.mean) {  // a patch of pairs turns with the body, and must not lie on a line
+    std::vector<Vec3> points;
+    for (const auto& [a, weight] : w) points.push_back(in.mesh.X[static_cast<size_t>(a)]);
+    if (t.components != 63 || on_a_line(points))
+      for (const auto& [a, weight] : w)
+        if (!in.sheets->at(a).empty())
+          d.bodies.try_emplace(in.mesh.node_id[static_cast<size_t>(a)], InpBody{in.mesh.X[static_cast<size_t>(a)], t.place, {}});
+  }
+  std::vector<std::int64_t> beams;  // nodes of beams, and others that are bodies, among them
+  std::vector<std::int64_t> ids = ids_of(d, t);
+  for (const auto& [a, weight] : w) ids.push_back(in.mesh.node_id[static_cast<size_t>(a)]);
+  sort_unique(ids);
+  for (const auto id : ids)
+    if (d.bodies.contains(id) && id != ref) {
+      beams.push_back(id);
+      if (const auto a = d.node.find(id); a != d.node.end()) w.erase(a->second);
+    }
+  if (t.kind == InpTie::Of::surface && w.empty() && beams.empty())
+    throw Error(t.place, fmt::format("{}: no node of surface \"{}\" is of a cell or a beam", t.name, t.of));
+  if (t.kind != InpTie::Of::nodes && !d.beams.empty())
+    if (const auto set = d.elset.find(t.of);
+        set != d.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d.beams.contains(id); }))
+      throw Error(t.place, fmt::format("{}: element set \"{}\" has beams", t.name, set->second.name), "a set of their nodes");
+  if (!t.mean && !beams.empty() && t.components != 63 && t.own_axes)
+    return in.skip(t.name + " of some components in axes of its own, of nodes of beams", t.place);
+  if (t.mean && !beams.empty()) return in.skip(t.name + ", distributing, of nodes of beams", t.place);
+  if (t.mean) {
+    if (t.own_axes && (t.components & 7) != 7)
+      in.skip(t.name + ", distributing, of some components in axes of its own", t.place);
+    else if (d.bodies.contains(ref))
+      in.skip(t.name + ", distributing, whose node carries springs, masses or rigid bodies", t.place);
+    else if (!d.means.try_emplace(ref, InpMean{place_of(d, ref, t.place), w, t.place}).second)
+      in.skip(t.name + " of a node that has one already", t.place);
+    return;
+  }
+  if ((t.components & 7) != 7 && (t.own_axes || (!w.empty() && (t.components & 7) == 0) || w.size() > most_rows))
+    return in.skip(t.name + (t.own_axes             ? " of some components in axes of its own"
+                             : w.size() > most_rows ? fmt::format(" of some components of more than {} nodes", most_rows)
+                                                    : " of turns alone, which nodes of solids do not have"),
+                   t.place);
+  if (d.means.erase(ref) > 0) in.skip("*DISTRIBUTING of a node that is *KINEMATIC too", t.place);
+  auto& body = d.bodies.try_emplace(ref, InpBody{place_of(d, ref, t.place), t.place, {}}).first->second;
+  std::vector<std::int64_t> rows;
+  for (const auto& [a, weight] : w) rows.push_back(a);
+  if (!rows.empty()) body.carries.push_back({t.name, t.place, rows, t.components & 7});
+  for (const auto id : beams) body.bodies.emplace_back(id, t.components);
+  if (!t.turns.target.empty() || t.turns.id) d.turns_of[node_of(d, t.turns)] = ref;
+}
+
 }  // namespace
 
 void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string>& surface) {
@@ -112,71 +165,10 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
       if (p.type != "DCOUP3D" && !d.node.contains(n)) d.bodies.try_emplace(n, InpBody{place_of(d, n, p.place), p.place, {}});
   for (const InpTie& t : d.ties) {
     if (t.left_out) continue;
-    auto w = members(d, t, in.mesh, surface);
+    const auto w = members(d, t, in.mesh, surface);
     const auto ref = t.no_node ? --own : t.kind == InpTie::Of::weighted ? node_of_coupling(d, t) : node_of(d, t.reference);
     if (t.no_node) d.loose[ref] = mean_of(d, t, w, in.mesh);
-    if (t.undecided) {
-      in.skip(t.name + " without *KINEMATIC or *DISTRIBUTING", t.place);
-      continue;
-    }
-    if (d.node.contains(ref) && !d.bodies.contains(ref)) {
-      in.skip(t.name + " whose reference node is a node of a cell", t.place);
-      continue;
-    }
-    if (in.sheets && !t.mean) {  // a patch of pairs turns with the body, and must not lie on a line
-      std::vector<Vec3> points;
-      for (const auto& [a, weight] : w) points.push_back(in.mesh.X[static_cast<size_t>(a)]);
-      if (t.components != 63 || on_a_line(points))
-        for (const auto& [a, weight] : w)
-          if (!in.sheets->at(a).empty())
-            d.bodies.try_emplace(in.mesh.node_id[static_cast<size_t>(a)], InpBody{in.mesh.X[static_cast<size_t>(a)], t.place, {}});
-    }
-    std::vector<std::int64_t> beams;  // nodes of beams, and others that are bodies, among them
-    std::vector<std::int64_t> ids = ids_of(d, t);
-    for (const auto& [a, weight] : w) ids.push_back(in.mesh.node_id[static_cast<size_t>(a)]);
-    sort_unique(ids);
-    for (const auto id : ids)
-      if (d.bodies.contains(id) && id != ref) {
-        beams.push_back(id);
-        if (const auto a = d.node.find(id); a != d.node.end()) w.erase(a->second);
-      }
-    if (t.kind == InpTie::Of::surface && w.empty() && beams.empty())
-      throw Error(t.place, fmt::format("{}: no node of surface \"{}\" is of a cell or a beam", t.name, t.of));
-    if (t.kind != InpTie::Of::nodes && !d.beams.empty())
-      if (const auto set = d.elset.find(t.of);
-          set != d.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d.beams.contains(id); }))
-        throw Error(t.place, fmt::format("{}: element set \"{}\" has beams", t.name, set->second.name), "a set of their nodes");
-    if (!t.mean && !beams.empty() && t.components != 63 && t.own_axes) {
-      in.skip(t.name + " of some components in axes of its own, of nodes of beams", t.place);
-      continue;
-    }
-    if (t.mean && !beams.empty()) {
-      in.skip(t.name + ", distributing, of nodes of beams", t.place);
-      continue;
-    }
-    if (t.mean) {
-      if (t.own_axes && (t.components & 7) != 7)
-        in.skip(t.name + ", distributing, of some components in axes of its own", t.place);
-      else if (d.bodies.contains(ref))
-        in.skip(t.name + ", distributing, whose node carries springs, masses or rigid bodies", t.place);
-      else if (!d.means.try_emplace(ref, InpMean{place_of(d, ref, t.place), w, t.place}).second)
-        in.skip(t.name + " of a node that has one already", t.place);
-      continue;
-    }
-    if ((t.components & 7) != 7 && (t.own_axes || (!w.empty() && (t.components & 7) == 0) || w.size() > most_rows)) {
-      in.skip(t.name + (t.own_axes             ? " of some components in axes of its own"
-                        : w.size() > most_rows ? fmt::format(" of some components of more than {} nodes", most_rows)
-                                               : " of turns alone, which nodes of solids do not have"),
-              t.place);
-      continue;
-    }
-    if (d.means.erase(ref) > 0) in.skip("*DISTRIBUTING of a node that is *KINEMATIC too", t.place);
-    auto& body = d.bodies.try_emplace(ref, InpBody{place_of(d, ref, t.place), t.place, {}}).first->second;
-    std::vector<std::int64_t> rows;
-    for (const auto& [a, weight] : w) rows.push_back(a);
-    if (!rows.empty()) body.carries.push_back({t.name, t.place, rows, t.components & 7});
-    for (const auto id : beams) body.bodies.emplace_back(id, t.components);
-    if (!t.turns.target.empty() || t.turns.id) d.turns_of[node_of(d, t.turns)] = ref;
+    find_tie(d, in, t, w, ref);
   }
 }
 
@@ -227,47 +219,35 @@ void write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOpt
   SceneWriter springs;
   const double size = size_of(d, in.mesh);
   std::set<std::int64_t> valued;
+  const auto give = [&](const InpPointValue& v, std::int64_t id) {
+    const auto p = d.points.find(id);
+    if (p == d.points.end() || v.first.empty()) return;
+    const std::string& type = p->second.type;
+    const double value = v.first.back();
+    if (type == "DCOUP3D" || (type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) return;
+    if (!valued.insert(id).second)
+      throw Error(v.place, fmt::format("{} of element {} is given twice", v.name, id), "give each element one value");
+    if (v.more)
+      in.skip(v.name + (v.table ? ": numbers after the first two, of temperatures"
+                                : ": numbers after the first, of temperatures or frequencies"),
+              v.place);
+    if (!v.table && value < 0) return in.skip(v.name + " below zero", v.place);
+    if (type == "MASS" && v.first.size() > 1) return in.skip(v.name + " of several values", v.place);
+    if (type == "MASS") return void(mass[p->second.nodes[0]] += value);
+    if (!type.ends_with('A') && std::ranges::any_of(p->second.nodes, [&](auto n) { return own_axes.contains(n); }))
+      return in.skip(v.name + " in axes of *TRANSFORM", v.place);
+    InpPointSpring spring{p->second, v, {}};
+    for (const auto node : p->second.nodes) spring.ends.push_back({"", X(node), d.bodies.contains(node)});
+    if (const std::string why = why_no_spring(spring); !why.empty()) return in.skip(why, v.place);
+    for (size_t k = 0; k < spring.ends.size(); ++k) spring.ends[k].name = end_name(p->second.nodes[k]);
+    write_point_spring(d, size, spring, o, springs);
+  };
   for (const InpPointValue& v : d.point_values) {
     auto set = d.elset.find(v.elset);
     if (set == d.elset.end()) set = d.elset.find(unqualified(v.elset));
     if (set == d.elset.end())
       throw Error(v.place, fmt::format("{}: no element set \"{}\"", v.name, v.elset), suggest_name(v.elset, d.elset));
-    for (const auto id : set->second.members) {
-      const auto p = d.points.find(id);
-      if (p == d.points.end() || v.first.empty()) continue;
-      const std::string& type = p->second.type;
-      const double value = v.first.back();
-      if (type == "DCOUP3D" || (type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) continue;
-      if (!valued.insert(id).second)
-        throw Error(v.place, fmt::format("{} of element {} is given twice", v.name, id), "give each element one value");
-      if (v.more)
-        in.skip(v.name + (v.table ? ": numbers after the first two, of temperatures"
-                                  : ": numbers after the first, of temperatures or frequencies"),
-                v.place);
-      if (!v.table && value < 0) {
-        in.skip(v.name + " below zero", v.place);
-        continue;
-      }
-      if (type == "MASS") {
-        if (v.first.size() > 1)
-          in.skip(v.name + " of several values", v.place);
-        else
-          mass[p->second.nodes[0]] += value;
-        continue;
-      }
-      if (!type.ends_with('A') && std::ranges::any_of(p->second.nodes, [&](auto n) { return own_axes.contains(n); })) {
-        in.skip(v.name + " in axes of *TRANSFORM", v.place);
-        continue;
-      }
-      InpPointSpring spring{p->second, v, {}};
-      for (const auto node : p->second.nodes) spring.ends.push_back({"", X(node), d.bodies.contains(node)});
-      if (std::string why = why_no_spring(spring); !why.empty()) {
-        in.skip(why, v.place);
-        continue;
-      }
-      for (size_t k = 0; k < spring.ends.size(); ++k) spring.ends[k].name = end_name(p->second.nodes[k]);
-      write_point_spring(d, size, spring, o, springs);
-    }
+    for (const auto id : set->second.members) give(v, id);
   }
   for (const auto& [id, p] : d.points)
     if (!valued.contains(id) && !(p.type == "DCOUP3D" && d.means.contains(p.nodes[0])))
