@@ -17,6 +17,7 @@ BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const Imp
   for (const auto a : in.mesh.nodes) used_[static_cast<size_t>(a)] = 1;
   for (const auto& name : in.mesh.all_names())
     if (!in.cases.empty()) scene_.take("set", name), scene_.take("facets", name);  // of the subcases before
+  for (const auto& s : deck.shells) shell_.try_emplace(s.id, &s);
   Eigen::AlignedBox3d box;
   for (const auto a : in.mesh.nodes) box.extend(X(a));
   for (const auto& b : deck.beams)
@@ -32,7 +33,7 @@ SceneWriter BdfScene::write() {
   find_masses();
   find_bodies();
   gravity();
-  rotation();
+  each(BdfLoad::Kind::rotation, &BdfScene::rotation);
   materials();
   bodies();
   beams();
@@ -40,10 +41,10 @@ SceneWriter BdfScene::write() {
   rigid();
   springs();
   supports();
-  varying_pressures();
+  each(BdfLoad::Kind::pressure, &BdfScene::varying_pressure);
   nodal_loads();
   pressures();
-  line_loads();
+  each(BdfLoad::Kind::line, &BdfScene::line_load);
   pairs();
   time();
   scene_.begin(deck_.chosen.title, gravity_);
@@ -87,10 +88,8 @@ void BdfScene::materials() {
   std::map<std::int64_t, std::int64_t> property_of;  // region -> its first property
   for (size_t c = 0; c < deck_.cells.size(); ++c) property_of.try_emplace(m.region[c], deck_.cells[c].property);
   if (in_.sheets) {  // shells that become solids
-    std::unordered_map<std::int64_t, std::int64_t> of_shell;
-    for (const auto& s : deck_.shells) of_shell.try_emplace(s.id, s.property);
     for (size_t c = deck_.cells.size(); c < m.cell_id.size(); ++c)
-      if (const auto s = of_shell.find(m.cell_id[c]); s != of_shell.end()) property_of.try_emplace(m.region[c], s->second);
+      if (const auto s = shell_.find(m.cell_id[c]); s != shell_.end()) property_of.try_emplace(m.region[c], s->second->property);
   }
   std::set<std::int64_t> used;
   SceneWriter regions;
@@ -185,15 +184,10 @@ void BdfScene::hold() {
     for (const BdfSupport& s : lines->second)
       for (const auto grid : s.grids) {
         const auto a = deck_.row.find(grid);
-        if (a == deck_.row.end()) {
+        if (a == deck_.row.end())
           in_.skip("SPC on a grid that is not there", s.place);
-          continue;
-        }
-        Held& h = held_[a->second];
-        if (h.place.empty()) h.place = s.place;
-        h.bits |= s.components;
-        for (size_t k = 0; k < 6; ++k)
-          if (s.components >> k & 1) h.value[k] = s.value;
+        else
+          held_[a->second].hold(s.components, s.value, s.place);
       }
   }
   for (const auto& [factor, l] : loads_) {
@@ -203,8 +197,7 @@ void BdfScene::hold() {
       in_.skip("SPCD of a component that no SPC holds", l->place);
       continue;
     }
-    for (size_t k = 0; k < 6; ++k)
-      if (l->components >> k & 1) h->second.value[k] = factor * l->size;
+    h->second.hold(l->components, factor * l->size, l->place);
   }
 }
 

@@ -100,28 +100,21 @@ void BdfScene::gravity() {
 }
 
 /// Of all solids, by load; the angular velocity is that of the entry times the length of its direction.
-void BdfScene::rotation() {
-  for (const auto& [factor, l] : loads_) {
-    if (l->kind != BdfLoad::Kind::rotation) continue;
-    if (factor < 0) {
-      in_.skip("RFORCE times a factor of LOAD below zero", l->place);
-      continue;
-    }
-    const Vec3 at = l->grid ? X(row(l->grid, l->place, "RFORCE")) : Vec3(Vec3::Zero());
-    const Vec3 axis = axes_at(deck_, l->system, at, l->place) * l->direction;
-    std::vector<char> has(in_.mesh.region_name.size(), 0);
-    for (std::int64_t c = 0; c < in_.mesh.n_cells(); ++c)
-      if (info(in_.mesh.shape[static_cast<size_t>(c)]).dimension != 2)
-        has[static_cast<size_t>(in_.mesh.region[static_cast<size_t>(c)])] = 1;
-    if (std::ranges::find(has, 0) != has.end()) in_.skip("RFORCE on shells", l->place);
-    const double omega = 2 * std::numbers::pi * l->size * axis.norm() * std::sqrt(factor), speed = omega / si("s");
-    if (speed == 0) continue;
-    spins_.push_back({at, omega * axis.normalized(), l->place});
-    for (size_t r = 0; r < has.size(); ++r)
-      if (has[r])
-        scene_.add_unique({"load", "centrifugal"}, in_.mesh.region_name[r] + "_centrifugal", l->place,
-                          {{"on", in_.mesh.region_name[r]}, {"at", point(at)}, {"axis", axis.normalized()}, {"speed", std::abs(speed)}});
-  }
+void BdfScene::rotation(double factor, const BdfLoad& l) {
+  if (factor < 0) return in_.skip("RFORCE times a factor of LOAD below zero", l.place);
+  const Vec3 at = l.grid ? X(row(l.grid, l.place, "RFORCE")) : Vec3(Vec3::Zero());
+  const Vec3 axis = axes_at(deck_, l.system, at, l.place) * l.direction;
+  std::vector<char> has(in_.mesh.region_name.size(), 0);
+  for (std::int64_t c = 0; c < in_.mesh.n_cells(); ++c)
+    if (info(in_.mesh.shape[static_cast<size_t>(c)]).dimension != 2) has[static_cast<size_t>(in_.mesh.region[static_cast<size_t>(c)])] = 1;
+  if (std::ranges::find(has, 0) != has.end()) in_.skip("RFORCE on shells", l.place);
+  const double omega = 2 * std::numbers::pi * l.size * axis.norm() * std::sqrt(factor), speed = omega / si("s");
+  if (speed == 0) return;
+  spins_.push_back({at, omega * axis.normalized(), l.place});
+  for (size_t r = 0; r < has.size(); ++r)
+    if (has[r])
+      scene_.add_unique({"load", "centrifugal"}, in_.mesh.region_name[r] + "_centrifugal", l.place,
+                        {{"on", in_.mesh.region_name[r]}, {"at", point(at)}, {"axis", axis.normalized()}, {"speed", std::abs(speed)}});
 }
 
 /// The same on masses at grids, and along beams, where it varies evenly: the force of their mass as drawn.
@@ -165,26 +158,22 @@ void BdfScene::distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const 
 }
 
 /// A pressure that varies evenly over a shell, as forces of its grids: the integrals of N_a p over the element as drawn.
-void BdfScene::varying_pressures() {
-  std::unordered_map<std::int64_t, const BdfDeck::Cell*> shell;
-  for (const auto& s : deck_.shells) shell.try_emplace(s.id, &s);
-  for (const auto& [factor, l] : loads_) {
-    if (l->kind != BdfLoad::Kind::pressure || l->at_corners.empty()) continue;
-    for (const auto element : l->elements) {
-      const auto s = shell.find(element);
-      if (s == shell.end() || info(s->second->shape).n_corners != info(s->second->shape).n_nodes) {
-        in_.skip("PLOAD4 that varies over the face", l->place);
-        continue;
-      }
-      Rows rows;
-      std::vector<Vec3> x;
-      for (const auto grid : s->second->nodes) rows.push_back(row(grid, l->place, "PLOAD4")), x.push_back(X(rows.back()));
-      const Vec3 way = axes_at(deck_, l->system, x[0], l->place) * l->direction;
-      const std::vector<Vec3> f = forces_of_pressure(x, l->at_corners, way);
-      for (size_t i = 0; i < rows.size(); ++i) force_[rows[i]].add(factor * options_.scale * options_.scale * f[i], l->place);
+void BdfScene::varying_pressure(double factor, const BdfLoad& l) {
+  if (l.at_corners.empty()) return;
+  for (const auto element : l.elements) {
+    const auto s = shell_.find(element);
+    if (s == shell_.end() || info(s->second->shape).n_corners != info(s->second->shape).n_nodes) {
+      in_.skip("PLOAD4 that varies over the face", l.place);
+      continue;
     }
-    in_.notes.push_back(fmt::format("{}: PLOAD4 that varies becomes forces of the grids, which do not turn with the shell", l->place));
+    Rows rows;
+    std::vector<Vec3> x;
+    for (const auto grid : s->second->nodes) rows.push_back(row(grid, l.place, "PLOAD4")), x.push_back(X(rows.back()));
+    const Vec3 way = axes_at(deck_, l.system, x[0], l.place) * l.direction;
+    const std::vector<Vec3> f = forces_of_pressure(x, l.at_corners, way);
+    for (size_t i = 0; i < rows.size(); ++i) force_[rows[i]].add(factor * options_.scale * options_.scale * f[i], l.place);
   }
+  in_.notes.push_back(fmt::format("{}: PLOAD4 that varies becomes forces of the grids, which do not turn with the shell", l.place));
 }
 
 void BdfScene::nodal_loads() {
@@ -272,40 +261,30 @@ void BdfScene::nodal_loads() {
 }
 
 /// PLOAD1: over a beam or a part of it, or at a point.
-void BdfScene::line_loads() {
-  for (const auto& [factor, l] : loads_) {
-    if (l->kind != BdfLoad::Kind::line) continue;
-    const auto made = made_beams_.find(l->elements.front());
-    if (made == made_beams_.end()) {
-      in_.skip("PLOAD1 on an element that is no beam of the scene", l->place);
-      continue;
-    }
-    const MadeBeam& beam = made->second;
-    if (beam.apart) {
-      in_.skip("PLOAD1 on a beam whose neutral axis is off its shear centre", l->place);
-      continue;
-    }
-    const double whole = beam.length(), unit = l->as_share ? whole : 1;
-    const size_t from = beam.section(l->from_to[0] * unit), to = beam.section(l->from_to[1] * unit);
-    const Vec3 way = l->own_axes ? Vec3(beam.axes * l->direction) : l->direction;
-    if (factor == 0 || (l->size == 0 && l->size_end == 0)) continue;
-    if (from == to) {  // at a point
-      const Vec3 value = factor * l->size * way;
-      SceneTable& load =
-          scene_.add_unique({"load", l->turns ? "torque" : "force"}, beam.name + "_point", l->place, {{"on", beam.body(from)}});
-      if (l->turns)
-        load.set("torque", value * si("N m"));
-      else
-        load.set("force", value * si("N")).set("at", point(beam.start + beam.sections[from] * beam.axes.col(0)));
-      continue;
-    }
-    const Vec3 one = factor * (l->projected ? beam.axes.col(0).cross(way).norm() : 1) * way;
-    if (one.norm() == 0) continue;
-    scene_.add_unique({"load", "line"}, beam.name + "_line", l->place, {{"on", beam.name}, {"force_per_length", l->size * one * si("N/m")}})
-        .set_if(l->size_end != l->size, "force_per_length_end", l->size_end * one * si("N/m"))
-        .set_if(from > 0, "from", beam.sections[from] * options_.scale * si("m"))
-        .set_if(to + 1 < beam.sections.size(), "to", beam.sections[to] * options_.scale * si("m"));
+void BdfScene::line_load(double factor, const BdfLoad& l) {
+  const auto made = made_beams_.find(l.elements.front());
+  if (made == made_beams_.end()) return in_.skip("PLOAD1 on an element that is no beam of the scene", l.place);
+  const MadeBeam& beam = made->second;
+  if (beam.apart) return in_.skip("PLOAD1 on a beam whose neutral axis is off its shear centre", l.place);
+  const double whole = beam.length(), unit = l.as_share ? whole : 1;
+  const size_t from = beam.section(l.from_to[0] * unit), to = beam.section(l.from_to[1] * unit);
+  const Vec3 way = l.own_axes ? Vec3(beam.axes * l.direction) : l.direction;
+  if (factor == 0 || (l.size == 0 && l.size_end == 0)) return;
+  if (from == to) {  // at a point
+    const Vec3 value = factor * l.size * way;
+    SceneTable& load = scene_.add_unique({"load", l.turns ? "torque" : "force"}, beam.name + "_point", l.place, {{"on", beam.body(from)}});
+    if (l.turns)
+      load.set("torque", value * si("N m"));
+    else
+      load.set("force", value * si("N")).set("at", point(beam.start + beam.sections[from] * beam.axes.col(0)));
+    return;
   }
+  const Vec3 one = factor * (l.projected ? beam.axes.col(0).cross(way).norm() : 1) * way;
+  if (one.norm() == 0) return;
+  scene_.add_unique({"load", "line"}, beam.name + "_line", l.place, {{"on", beam.name}, {"force_per_length", l.size * one * si("N/m")}})
+      .set_if(l.size_end != l.size, "force_per_length_end", l.size_end * one * si("N/m"))
+      .set_if(from > 0, "from", beam.sections[from] * options_.scale * si("m"))
+      .set_if(to + 1 < beam.sections.size(), "to", beam.sections[to] * options_.scale * si("m"));
 }
 
 /// The facet of a solid that PLOAD4 names by one or two of its corners.
@@ -344,8 +323,6 @@ void BdfScene::pressures() {
   std::vector<Pushed> pushed;
   std::vector<std::vector<std::int64_t>> corners;  // of shells and faces by their grids
   std::vector<size_t> open;                        // their places in `pushed`
-  std::unordered_map<std::int64_t, const BdfDeck::Cell*> shell;
-  for (const auto& s : deck_.shells) shell.try_emplace(s.id, &s);
   for (const auto& [factor, l] : loads_) {
     if (l->kind != BdfLoad::Kind::pressure || !l->at_corners.empty()) continue;
     std::int64_t missing = 0;
@@ -359,7 +336,7 @@ void BdfScene::pressures() {
     for (const auto element : l->elements)
       if (deck_.cell_row.contains(element))
         pushed.push_back({factor, l, face_of_solid(*l, element), 1});
-      else if (const auto s = shell.find(element); s != shell.end())
+      else if (const auto s = shell_.find(element); s != shell_.end())
         by_grids(s->second->nodes);
       else
         ++missing;

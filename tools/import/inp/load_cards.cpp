@@ -69,12 +69,11 @@ void read_supports(InpReading& r) {
     b.first = static_cast<int>(l.integer(1));
     b.last = l.empty(2) ? b.first : static_cast<int>(l.integer(2));
     b.value = l.number(3);
-    if (b.first < 1 || b.first > 6) {
-      in.skip(fmt::format("*BOUNDARY on degree of freedom {}", b.first), b.place);
-      continue;
-    }
     b.last = std::min(b.last, 6);
-    d.supports.push_back(b);
+    if (b.first < 1 || b.first > 6)
+      in.skip(fmt::format("*BOUNDARY on degree of freedom {}", b.first), b.place);
+    else
+      d.supports.push_back(b);
   }
 }
 
