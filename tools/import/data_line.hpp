@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/math.hpp"
+
 namespace hilo {
 
 /// A field of a data line, blanks stripped, and where it stands.
@@ -44,6 +46,8 @@ struct DataLine {
   bool empty(size_t field) const { return text(field).empty(); }
   /// A number; an empty field is `fallback`.  Throws Error with the place.
   double number(size_t field, double fallback = 0) const;
+  /// Three of them, from this field on.
+  Vec3 vector(size_t field) const { return {number(field), number(field + 1), number(field + 2)}; }
   std::int64_t integer(size_t field) const;
   std::int64_t integer(size_t field, std::int64_t fallback) const { return empty(field) ? fallback : integer(field); }
   bool is_integer(size_t field) const;

@@ -75,7 +75,7 @@ void read_rbe3(const BdfEntry& d, BdfDeck& deck, Imported& in) {
 /// EID G CID M X1 X2 X3 - I11 I21 I22 I31 I32 I33; the off-diagonal ones are integrals of products, so the tensor has them with a minus.
 void read_conm2(const BdfEntry& d, BdfDeck& deck, Imported&) {
   BdfMass m{d.integer(0), d.integer(1), d.integer(2, 0), d.number(3), {}, Mat3::Zero(), d.place()};
-  m.offset = Vec3(d.number(4), d.number(5), d.number(6));
+  m.offset = d.vector(4);
   const double I[6] = {d.number(8), d.number(9), d.number(10), d.number(11), d.number(12), d.number(13)};
   m.inertia << I[0], -I[1], -I[3], -I[1], I[2], -I[4], -I[3], -I[4], I[5];
   for (const size_t i : {8, 10, 13})
@@ -138,7 +138,7 @@ void read_bush(const BdfEntry& d, BdfDeck& deck, Imported& in) {
     if (d.is_integer(4) && d.empty(5) && d.empty(6))
       s.towards = d.integer(4);
     else
-      s.plane = Vec3(d.number(4), d.number(5), d.number(6));
+      s.plane = d.vector(4);
     if (!d.empty(7)) s.system = d.integer(7);
     if (!d.empty(8)) s.share = d.number(8);
     if (!d.empty(9) && d.integer(9) != -1) return in.skip("CBUSH with a place of its own (OCID)", d.place(9));

@@ -54,7 +54,7 @@ void read_orientation(const BdfEntry& d, Beam& b) {
   if (d.empty(5) && d.empty(6) && d.is_integer(4))
     b.towards = d.integer(4);
   else
-    b.v = Vec3(d.number(4), d.number(5), d.number(6));
+    b.v = d.vector(4);
   if (!d.empty(7) && !d.is_integer(7)) b.axes = upper(d.text(7));
   if (!b.axes.empty() && (b.axes.size() != 3 || b.axes.find_first_not_of("GBO") != b.axes.npos || b.axes[0] == 'O'))
     throw Error(d.place(7), fmt::format("{}: OFFT {} is not three of G, B, O, the first of them G or B", d.name, b.axes));

@@ -70,7 +70,7 @@ class Line {
   Line(const InpReading& r, const DataLine& l, const Vec3& a, const Vec3& b) : a_(a), b_(b), kind_(r.card.word("LINE")) {
     if (kind_.empty()) return;
     const std::string system = r.card.word("SYSTEM");
-    extra_ = l.empty(3) ? Vec3(l.number(4), l.number(5), l.number(6)) : place_of(r.deck, known_node(r, l, 3));
+    extra_ = l.empty(3) ? l.vector(4) : place_of(r.deck, known_node(r, l, 3));
     if (l.empty(3) && l.empty(4) && l.empty(5) && l.empty(6))
       throw Error(l.place(3), fmt::format("*NGEN, LINE={} has no extra point", kind_), kind_ == "C" ? "the centre" : "the middle");
     if (l.empty(3) && system == "C") {
@@ -89,7 +89,7 @@ class Line {
  private:
   void arc(const DataLine& l) {
     const Vec3 u = a_ - extra_, v = b_ - extra_;
-    const Vec3 normal(l.number(7), l.number(8), l.number(9));
+    const Vec3 normal = l.vector(7);
     if (!(u.norm() > 0) || !(std::abs(u.norm() - v.norm()) <= 1e-3 * u.norm()))
       throw Error(l.place(l.empty(3) ? 4 : 3), fmt::format("*NGEN, LINE=C: the ends are {:g} and {:g} from the centre", u.norm(), v.norm()),
                   "an arc has one radius");
@@ -143,24 +143,26 @@ void read_ngen(InpReading& r) {
   }
 }
 
+/// The set of a name that stands before, in this instance or outside of it.
+const InpSet& earlier_set(const InpReading& r, const std::map<std::string, InpSet>& sets, const std::string& name, const char* kind,
+                          const std::string& place) {
+  auto set = sets.find(upper(r.deck.prefix) + upper(name));
+  if (set == sets.end()) set = sets.find(upper(name));
+  if (set == sets.end()) throw Error(place, fmt::format("{}: no {} \"{}\" so far", r.card.name, kind, name), suggest_name(name, sets));
+  return set->second;
+}
+
 /// The nodes of a set as *NFILL goes through them: by number, where the deck does not say UNSORTED.
 std::vector<std::int64_t> bound(const InpReading& r, const DataLine& l, size_t field) {
   const InpDeck& d = r.deck;
-  std::vector<std::int64_t> ids;
   if (l.is_integer(field)) return {known_node(r, l, field)};
-  auto set = d.nset.find(upper(d.prefix) + upper(l.text(field)));
-  if (set == d.nset.end()) set = d.nset.find(upper(l.text(field)));
-  if (set == d.nset.end())
-    throw Error(l.place(field), fmt::format("*NFILL: no node set \"{}\" so far", l.text(field)),
-                suggest_name(std::string(l.text(field)), d.nset));
-  ids = set->second.members;
-  if (!set->second.unsorted) {
-    sort_unique(ids);
-  }
+  const InpSet& set = earlier_set(r, d.nset, std::string(l.text(field)), "node set", l.place(field));
+  std::vector<std::int64_t> ids = set.members;
+  if (!set.unsorted) sort_unique(ids);
   for (const auto id : ids)
     if (!d.node.contains(id))
-      throw Error(l.place(field), fmt::format("*NFILL: no node {} of set \"{}\" so far", id - d.node_shift(), set->second.name));
-  if (ids.empty()) throw Error(l.place(field), fmt::format("*NFILL: node set \"{}\" is empty", set->second.name));
+      throw Error(l.place(field), fmt::format("*NFILL: no node {} of set \"{}\" so far", id - d.node_shift(), set.name));
+  if (ids.empty()) throw Error(l.place(field), fmt::format("*NFILL: node set \"{}\" is empty", set.name));
   return ids;
 }
 
@@ -307,14 +309,13 @@ Copied copied_by(InpReading& r) {
   const Card& card = r.card;
   Copied c;
   DataLine l;
-  const auto point = [&](size_t field) { return Vec3(l.number(field), l.number(field + 1), l.number(field + 2)); };
   if (card.has("SHIFT")) {
     while (r.lines.next_data(l)) {
       if (l.fields.size() <= 3) {
-        c.b += point(0);
+        c.b += l.vector(0);
         continue;
       }
-      const Vec3 at = point(0), axis = point(3) - at;
+      const Vec3 at = l.vector(0), axis = l.vector(3) - at;
       if (!(axis.norm() > 0)) throw Error(l.place(3), "*NCOPY: the two points of its axis are one");
       const Mat3 turn = Eigen::AngleAxisd(l.number(6) * std::numbers::pi / 180, axis.normalized()).toRotationMatrix();
       c = {turn * c.A, at + turn * (c.b - at)};
@@ -348,12 +349,7 @@ Copied copied_by(InpReading& r) {
 
 /// The set that a card copies.
 const InpSet& set_to_copy(const InpReading& r, const std::map<std::string, InpSet>& sets) {
-  const std::string name = r.card.need("OLDSET");
-  auto set = sets.find(upper(r.deck.prefix) + upper(name));
-  if (set == sets.end()) set = sets.find(upper(name));
-  if (set == sets.end())
-    throw Error(r.card.place("OLDSET"), fmt::format("{}: no set \"{}\" so far", r.card.name, name), suggest_name(name, sets));
-  return set->second;
+  return earlier_set(r, sets, r.card.need("OLDSET"), "set", r.card.place("OLDSET"));
 }
 
 void read_ncopy(InpReading& r) {

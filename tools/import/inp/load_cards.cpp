@@ -123,13 +123,13 @@ void read_distributed(InpReading& r) {
       p.face = 0;
     else if (!surface && label == "GRAV") {
       p.face = -1;
-      p.direction = Vec3(l.number(3), l.number(4), l.number(5));
+      p.direction = l.vector(3);
       if (p.direction.norm() == 0) throw Error(l.place(3), "GRAV: the direction has no length");
       p.direction.normalize();
     } else if (!surface && label == "CENTRIF") {
       p.face = -2;
-      p.at = Vec3(l.number(3), l.number(4), l.number(5));
-      p.direction = Vec3(l.number(6), l.number(7), l.number(8));
+      p.at = l.vector(3);
+      p.direction = l.vector(6);
       if (p.direction.norm() == 0) throw Error(l.place(6), "CENTRIF: the axis has no length");
       if (p.value < 0) throw Error(l.place(2), "CENTRIF: the square of a speed is below zero");
       p.direction.normalize();
@@ -152,7 +152,7 @@ void read_transform(InpReading& r) {
   const std::string type = r.card.word("TYPE", "R");
   t.cylindrical = type == "C", t.is_read = type == "R" || type == "C";
   DataLine l;
-  if (r.lines.next_data(l)) t.a = Vec3(l.number(0), l.number(1), l.number(2)), t.b = Vec3(l.number(3), l.number(4), l.number(5));
+  if (r.lines.next_data(l)) t.a = l.vector(0), t.b = l.vector(3);
   r.deck.transformed.push_back(t);
 }
 

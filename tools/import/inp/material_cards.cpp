@@ -341,7 +341,7 @@ void read_beam_section(InpReading& r) {
   double above = 0;
   s.beam = beam_shape(r, l, s.along_n2, extent, above);
   s.beam.area(0.3, l.place(0));
-  if (r.lines.next_data(l)) s.n1 = Vec3(l.number(0), l.number(1), l.number(2));
+  if (r.lines.next_data(l)) s.n1 = l.vector(0);
   for (int k = 0; k < 2; ++k)
     if (const char* key = k == 0 ? "OFFSET1" : "OFFSET2"; r.card.has(key)) {
       const std::string word = r.card.word(key);
@@ -367,7 +367,7 @@ void read_general_section(InpReading& r) {
   s.beam = general_section(l.number(0), l.number(3), l.number(1), l.number(4));
   s.beam.I12 = -l.number(2);
   const std::string place = l.place();
-  if (r.lines.next_data(l) && !(l.empty(0) && l.empty(1) && l.empty(2))) s.n1 = Vec3(l.number(0), l.number(1), l.number(2));
+  if (r.lines.next_data(l) && !(l.empty(0) && l.empty(1) && l.empty(2))) s.n1 = l.vector(0);
   if (!r.lines.next_data(l)) throw Error(place, r.card.name + " lacks its third line", "E, G");
   DeckMaterial own;
   own.name = s.elset_name + "_section";

@@ -58,7 +58,7 @@ void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
     if (id < 1 || id >= (d.shift ? instance_numbers : assembly_numbers))
       throw Error(l.place(0), fmt::format("node number {} is not one", id));
     id += d.node_shift();
-    Vec3 x(l.number(1), l.number(2), l.number(3));
+    Vec3 x = l.vector(1);
     if (const double t = x[1] * std::numbers::pi / 180; system == "C") x = Vec3(x[0] * std::cos(t), x[0] * std::sin(t), x[2]);
     x = d.system_at + d.system_axes * x;
     const auto [it, fresh] = d.node.try_emplace(id, static_cast<std::int64_t>(d.X.size()));

@@ -41,13 +41,11 @@ void place_instance(InpReading& r) {
   DataLine l;
   if (!r.lines.next_data(l)) return;
   InpDeck::Placed& p = r.deck.placed;
-  p.by = Vec3(l.number(0), l.number(1), l.number(2));
-  if (l.fields.size() > 3 || !r.lines.next_data(l)) {
-    if (l.fields.size() > 3) throw Error(l.place(3), "*INSTANCE: three numbers move it, the next line turns it");
-    return;
-  }
-  p.at = Vec3(l.number(0), l.number(1), l.number(2));
-  const Vec3 axis = Vec3(l.number(3), l.number(4), l.number(5)) - p.at;
+  p.by = l.vector(0);
+  if (l.fields.size() > 3) throw Error(l.place(3), "*INSTANCE: three numbers move it, the next line turns it");
+  if (!r.lines.next_data(l)) return;
+  p.at = l.vector(0);
+  const Vec3 axis = l.vector(3) - p.at;
   const double angle = l.number(6) * std::numbers::pi / 180;
   if (!(axis.norm() > 0)) throw Error(l.place(3), "*INSTANCE: the two points of its axis are one");
   p.turn = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
