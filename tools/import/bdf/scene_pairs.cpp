@@ -44,23 +44,16 @@ void BdfScene::pairs() {
     if (chosen >= 0 && !all.has(chosen))
       in_.skip(fmt::format("{} = {}, of which there is none", card == "BCTSET" ? "BCSET" : card, chosen), "case control");
     std::set<std::pair<std::string, std::string>> seen;
+    const auto pair = [&](std::int64_t id, const BdfGlue& g) {
+      if (taken.any && !all.takes(chosen, id)) return in_.skip(card + " of a set that the first subcase does not use", g.place);
+      const std::string a = pair_surface(g.target), b = pair_surface(g.source);
+      if (a.empty() || b.empty()) return in_.skip(card + " of a region that is no BSURFS", g.place);
+      if (!seen.emplace(std::minmax(a, b)).second)
+        return in_.notes.push_back(fmt::format("{}: a [[{}]] has these two regions already", g.place, section));
+      keys(g, scene_.add_unique(section, fmt::format("{}_{}", name, id), g.place, {{"a", a}, {"b", b}}));
+    };
     for (const auto& [id, list] : all.lines)
-      for (const BdfGlue& g : list) {
-        if (taken.any && !all.takes(chosen, id)) {
-          in_.skip(card + " of a set that the first subcase does not use", g.place);
-          continue;
-        }
-        const std::string a = pair_surface(g.target), b = pair_surface(g.source);
-        if (a.empty() || b.empty()) {
-          in_.skip(card + " of a region that is no BSURFS", g.place);
-          continue;
-        }
-        if (!seen.emplace(std::minmax(a, b)).second) {
-          in_.notes.push_back(fmt::format("{}: a [[{}]] has these two regions already", g.place, section));
-          continue;
-        }
-        keys(g, scene_.add_unique(section, fmt::format("{}_{}", name, id), g.place, {{"a", a}, {"b", b}}));
-      }
+      for (const BdfGlue& g : list) pair(id, g);
   };
   each(deck_.glue, taken.glue, "BGSET", "tie", "glue",
        [&](const BdfGlue& g, SceneTable& tie) { tie.set_if(g.distance > 0, "gap", g.distance * options_.scale * si("m")); });

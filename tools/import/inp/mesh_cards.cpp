@@ -234,17 +234,14 @@ void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
     else
       one.target = upper(d.prefix) + upper(unquote(l.text(0)));
     const std::string face = upper(l.text(1));
-    if (!s.of_nodes && !face.empty()) {
-      if (face == "SPOS" || face == "SNEG") {
-        one.face = face == "SPOS" ? 2 : 1, one.of_shell = true;
-        s.lines.push_back(one);
-        continue;
-      }
-      if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '6') {
-        in.skip(fmt::format("*SURFACE: face {}", face), l.place());
-        continue;
-      }
+    const bool by_face = !s.of_nodes && !face.empty();
+    if (by_face && (face == "SPOS" || face == "SNEG"))
+      one.face = face == "SPOS" ? 2 : 1, one.of_shell = true;
+    else if (by_face && face.size() == 2 && face[0] == 'S' && face[1] >= '1' && face[1] <= '6')
       one.face = face[1] - '0';
+    else if (by_face) {
+      in.skip(fmt::format("*SURFACE: face {}", face), l.place());
+      continue;
     }
     s.lines.push_back(one);
   }

@@ -291,9 +291,8 @@ void InpScene::pressures() {
 }
 
 void InpScene::velocities() {
-  for (const auto& g : nodal_groups(d_, d_.velocities, "*INITIAL CONDITIONS, TYPE=VELOCITY", false, turned_, in_)) {
+  for (const auto& g : nodal_groups(d_, d_.velocities, "*INITIAL CONDITIONS, TYPE=VELOCITY", false, turned_, in_))
     scene_.add("initial", "", g.place,
                {{"on", std::vector{set_of(g.target, g.nodes, "velocity", false)}}, {"velocity", g.value * si("m/s")}});
-  }
 }
 }  // namespace hilo
