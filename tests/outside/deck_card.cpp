@@ -25,8 +25,8 @@ void read_lame(InpReading& r) {
 /// MATLAME, number, lambda, mu, density
 void read_matlame(const BdfEntry& e, BdfDeck& deck, Imported&) {
   DeckMaterial& m = material_of(e, deck);
-  set_moduli(m, e.data.number(1), e.data.number(2));
-  m.data.density = e.data.number(3);
+  set_moduli(m, e.number(1), e.number(2));
+  m.data.density = e.number(3);
 }
 
 }  // namespace

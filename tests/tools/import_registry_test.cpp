@@ -93,8 +93,8 @@ TEST_F(ImportRegistry, AnEntryOfABdfDeckFromOutsideIsOneRow) {
   EXPECT_EQ(read(bdf_cards(), without), 1u);
   auto cards = bdf_cards();
   cards.add({"TWIN", [](const BdfEntry& e, BdfDeck& deck, Imported&) {
-               deck.X.emplace_back(e.data.number(1), 0, 0);
-               deck.node_id.push_back(e.data.integer(0));
+               deck.X.emplace_back(e.number(1), 0, 0);
+               deck.node_id.push_back(e.integer(0));
              }});
   EXPECT_EQ(read(cards, with), 0u);
   ASSERT_EQ(with.X.size(), 2u);

@@ -86,12 +86,12 @@ Registry<MeshFormat>& mesh_formats() {
                                    {".g", read_exodus, false, true},
                                    {".gen", read_exodus, false, true},
                                    {".stl", read_stl},
-                                   {".geo", read_geo, true},
-                                   {".step", read_step, true},
-                                   {".stp", read_step, true},
-                                   {".brep", read_brep, true},
-                                   {".iges", read_iges, true},
-                                   {".igs", read_iges, true}}};
+                                   {".geo", read_geometry, true},
+                                   {".step", read_geometry, true},
+                                   {".stp", read_geometry, true},
+                                   {".brep", read_geometry, true},
+                                   {".iges", read_geometry, true},
+                                   {".igs", read_geometry, true}}};
   return all;
 }
 

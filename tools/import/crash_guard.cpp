@@ -14,6 +14,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "import/data_line.hpp"
 
 namespace hilo {
 namespace {
@@ -47,16 +48,6 @@ std::string_view error_in(std::string_view line) {
   return at == line.npos ? std::string_view{} : line.substr(at);
 }
 
-/// Calls `use` with each line of a text.
-template <class Use>
-void each_line(std::string_view text, const Use& use) {
-  for (size_t at = 0; at < text.size();) {
-    const size_t end = std::min(text.find('\n', at), text.size());
-    use(text.substr(at, end - at));
-    at = end + 1;
-  }
-}
-
 void say(std::string_view text) {
   if (write(aloud, text.data(), text.size()) < 0) _exit(static_cast<int>(Exit::fault));
 }
@@ -65,9 +56,8 @@ void tell_crash() {
   say(crash_line);
   if (crash_exit == static_cast<int>(Exit::input)) {
     std::string_view last;
-    each_line(listen(), [&](std::string_view line) {
+    for (const std::string_view line : lines_of(listen()))
       if (const auto error = error_in(line); !error.empty()) last = error;
-    });
     if (last.empty())
       say(no_quote);
     else
@@ -116,9 +106,8 @@ CrashGuard::~CrashGuard() {
     close(stderr_);
     aloud = 2;
     if (!silent_)
-      each_line(listen(), [](std::string_view line) {
+      for (const std::string_view line : lines_of(listen()))
         if (error_in(line).empty()) std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
-      });
     close(heard);
     heard = -1;
   }

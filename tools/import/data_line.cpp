@@ -14,6 +14,12 @@
 
 namespace hilo {
 
+std::string_view strip(std::string_view s) {
+  while (!s.empty() && std::isspace(static_cast<unsigned char>(s.front()))) s.remove_prefix(1);
+  while (!s.empty() && std::isspace(static_cast<unsigned char>(s.back()))) s.remove_suffix(1);
+  return s;
+}
+
 std::string upper(std::string_view s) {
   std::string u;
   for (const char c : s)

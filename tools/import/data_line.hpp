@@ -2,9 +2,12 @@
 // Text decks: a line cut into fields that know where they stand, and the numbers in them.
 #pragma once
 #include <cstdint>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/math.hpp"
 
 namespace hilo {
 
@@ -43,9 +46,21 @@ struct DataLine {
   bool empty(size_t field) const { return text(field).empty(); }
   /// A number; an empty field is `fallback`.  Throws Error with the place.
   double number(size_t field, double fallback = 0) const;
+  /// Three of them, from this field on.
+  Vec3 vector(size_t field) const { return {number(field), number(field + 1), number(field + 2)}; }
   std::int64_t integer(size_t field) const;
+  std::int64_t integer(size_t field, std::int64_t fallback) const { return empty(field) ? fallback : integer(field); }
   bool is_integer(size_t field) const;
 };
+
+/// The lines of a text.
+inline auto lines_of(std::string_view text) {
+  if (text.ends_with('\n')) text.remove_suffix(1);
+  return text | std::views::split('\n') | std::views::transform([](auto line) { return std::string_view(line.begin(), line.end()); });
+}
+
+/// A text without the blanks at its ends.
+std::string_view strip(std::string_view s);
 
 /// Upper case, blanks removed.
 std::string upper(std::string_view s);

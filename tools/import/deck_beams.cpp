@@ -33,10 +33,17 @@ SectionArea DeckSection::area(double nu, const std::string& place) const {
   return out;
 }
 
+DeckSection circle_section(double diameter) { return {"circle", {{"diameter", diameter}}}; }
+DeckSection tube_section(double diameter, double thickness) { return {"tube", {{"diameter", diameter}, {"thickness", thickness}}}; }
+DeckSection rectangle_section(double width, double height) { return {"rectangle", {{"width", width}, {"height", height}}}; }
+DeckSection box_section(double width, double height, double thickness) {
+  return {"box", {{"width", width}, {"height", height}, {"thickness", thickness}}};
+}
+DeckSection I_section(double width, double height, double flange, double web) {
+  return {"I", {{"width", width}, {"height", height}, {"flange", flange}, {"web", web}}};
+}
 DeckSection general_section(double A, double I1, double I2, double J) {
-  DeckSection out;
-  out.sizes = {{"area", A}, {"I1", I1}, {"I2", I2}, {"J", J}};
-  return out;
+  return {"general", {{"area", A}, {"I1", I1}, {"I2", I2}, {"J", J}}};
 }
 
 DeckSection section_of_rectangles(const std::vector<DeckRectangle>& parts, const std::string& place) {

@@ -27,6 +27,12 @@ struct DeckSection {
   SectionArea area(double nu, const std::string& place) const;
 };
 
+/// Those of [section.NAME] by their sizes.
+DeckSection circle_section(double diameter);
+DeckSection tube_section(double diameter, double thickness);
+DeckSection rectangle_section(double width, double height);
+DeckSection box_section(double width, double height, double thickness);
+DeckSection I_section(double width, double height, double flange, double web);
 /// One that is given by its area, second moments about axes 1 and 2, and J.
 DeckSection general_section(double A, double I1, double I2, double J);
 

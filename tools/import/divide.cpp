@@ -104,30 +104,23 @@ class Dividing {
   /// The first child stands where its parent stood, the others behind all cells.
   void rebuild() {
     Mesh& m = m_;
-    std::vector<std::int64_t> nodes, offset{0};
-    const auto n_old = m.n_cells();
-    const auto add = [&](std::span<const std::int64_t> cell) {
-      nodes.insert(nodes.end(), cell.begin(), cell.end());
-      offset.push_back(static_cast<std::int64_t>(nodes.size()));
-    };
-    for (std::int64_t c = 0; c < n_old; ++c)
+    Mesh cells;
+    for (std::int64_t c = 0; c < m.n_cells(); ++c)
       if (const auto of = children_.find(c); of != children_.end())
-        add(of->second[0]), m.shape[c] = static_cast<std::uint8_t>(quad4);
+        cells.add_cell(quad4, of->second[0], m.region[c], m.cell_id[c]);
       else
-        add(m.cell(c));
+        cells.add_cell(static_cast<Shape>(m.shape[c]), m.cell(c), m.region[c], m.cell_id[c]);
     std::int64_t id = *std::ranges::max_element(m.cell_id);
     for (auto& [c, of] : children_) {
       const ThinSection whole = in_.thin.at(c);
       in_.thin.at(c) = child(whole, 0, of.size());
       for (size_t k = 1; k < of.size(); ++k) {
-        behind_[c].push_back(static_cast<std::int64_t>(offset.size()) - 1);
-        add(of[k]);
-        m.shape.push_back(static_cast<std::uint8_t>(quad4));
-        m.region.push_back(m.region[c]), m.cell_id.push_back(++id);
+        behind_[c].push_back(cells.n_cells());
+        cells.add_cell(quad4, of[k], m.region[c], ++id);
         in_.thin.emplace(behind_[c].back(), child(whole, k, of.size()));
       }
     }
-    m.nodes = std::move(nodes), m.offset = std::move(offset);
+    replace_cells(m, std::move(cells));
     for (auto& [name, set] : m.cell_sets)
       for (size_t k = 0, n = set.size(); k < n; ++k)
         if (const auto more = behind_.find(set[k]); more != behind_.end()) set.insert(set.end(), more->second.begin(), more->second.end());

@@ -17,11 +17,12 @@
 namespace hilo {
 namespace {
 
-/// A topology by how its name begins: dimension, nodes, our shape, the nodes: ours[i] = theirs[p[i]]; faces keep their corners.
+/// A topology by how its name begins, and numbers of nodes: dimension, our shape, the nodes: ours[i] = theirs[p[i]]; faces keep their
+/// corners.
 struct ExodusKind {
   std::string_view begins;
+  std::vector<std::int64_t> n_nodes;
   int dimension;
-  std::int64_t n_nodes;
   Shape shape;
   std::vector<int> p;
 };
@@ -31,40 +32,25 @@ const ExodusKind* exodus_kind(const std::string& topology, std::int64_t n_nodes)
   static const std::vector<int> hex20{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15};
   static const std::vector<int> wedge15{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11};
   static const std::vector<ExodusKind> kinds = {
-      {"BAR", 1, 2, Shape::bar2, line},
-      {"BAR", 1, 3, Shape::bar2, line},
-      {"BEAM", 1, 2, Shape::bar2, line},
-      {"BEAM", 1, 3, Shape::bar2, line},
-      {"TRUSS", 1, 2, Shape::bar2, line},
-      {"TRUSS", 1, 3, Shape::bar2, line},
-      {"ROD", 1, 2, Shape::bar2, line},
-      {"EDGE", 1, 2, Shape::bar2, line},
-      {"EDGE", 1, 3, Shape::bar2, line},
-      {"TRI", 2, 3, Shape::bar2, tri},
-      {"TRI", 2, 4, Shape::bar2, tri},
-      {"TRI", 2, 6, Shape::bar2, tri},
-      {"TRI", 2, 7, Shape::bar2, tri},
-      {"QUAD", 2, 4, Shape::bar2, quad},
-      {"QUAD", 2, 5, Shape::bar2, quad},
-      {"QUAD", 2, 8, Shape::bar2, quad},
-      {"QUAD", 2, 9, Shape::bar2, quad},
-      {"SHELL", 2, 3, Shape::bar2, tri},
-      {"SHELL", 2, 4, Shape::bar2, quad},
-      {"SHELL", 2, 6, Shape::bar2, tri},
-      {"SHELL", 2, 8, Shape::bar2, quad},
-      {"SHELL", 2, 9, Shape::bar2, quad},
-      {"TET", 3, 4, Shape::tet4, {0, 1, 2, 3}},
-      {"TET", 3, 10, Shape::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
-      {"PYRAMID", 3, 5, Shape::tet4, {0, 1, 2, 3, 4}},
-      {"WEDGE", 3, 6, Shape::wedge6, {0, 1, 2, 3, 4, 5}},
-      {"WEDGE", 3, 15, Shape::wedge15, wedge15},
-      {"WEDGE", 3, 18, Shape::wedge15, wedge15},
-      {"HEX", 3, 8, Shape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
-      {"HEX", 3, 20, Shape::hex20r, hex20},
-      {"HEX", 3, 27, Shape::hex20r, hex20},
+      {"BAR", {2, 3}, 1, Shape::bar2, line},
+      {"BEAM", {2, 3}, 1, Shape::bar2, line},
+      {"TRUSS", {2, 3}, 1, Shape::bar2, line},
+      {"ROD", {2}, 1, Shape::bar2, line},
+      {"EDGE", {2, 3}, 1, Shape::bar2, line},
+      {"TRI", {3, 4, 6, 7}, 2, Shape::bar2, tri},
+      {"QUAD", {4, 5, 8, 9}, 2, Shape::bar2, quad},
+      {"SHELL", {3, 6}, 2, Shape::bar2, tri},
+      {"SHELL", {4, 8, 9}, 2, Shape::bar2, quad},
+      {"TET", {4}, 3, Shape::tet4, {0, 1, 2, 3}},
+      {"TET", {10}, 3, Shape::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
+      {"PYRAMID", {5}, 3, Shape::tet4, {0, 1, 2, 3, 4}},
+      {"WEDGE", {6}, 3, Shape::wedge6, {0, 1, 2, 3, 4, 5}},
+      {"WEDGE", {15, 18}, 3, Shape::wedge15, wedge15},
+      {"HEX", {8}, 3, Shape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
+      {"HEX", {20, 27}, 3, Shape::hex20r, hex20},
   };
   for (const auto& k : kinds)
-    if (topology.starts_with(k.begins) && n_nodes == k.n_nodes) return &k;
+    if (topology.starts_with(k.begins) && std::ranges::count(k.n_nodes, n_nodes) > 0) return &k;
   return nullptr;
 }
 
@@ -205,7 +191,7 @@ void add_block(GroupedMesh& mesh, const ExodusFile& file, const ex_block& b, std
             path, fmt::format("element {} of block \"{}\" names the node in place {}, and there are {}", id, name, node, node_ids.size()));
       rows.push_back(node - 1);
     }
-    if (!mesh.add_element(kind->dimension, kind->shape, id, b.id, std::move(rows), kind->n_nodes > 4))
+    if (!mesh.add_element(kind->dimension, kind->shape, id, b.id, std::move(rows), b.num_nodes_per_entry > 4))
       throw Error(path, fmt::format("element {} is given twice", id), "number each element once");
     group.elements.push_back(id);
   }

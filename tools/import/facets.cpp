@@ -46,6 +46,12 @@ bool same_turn(const std::vector<std::int64_t>& face, const std::int64_t* facet,
 
 }  // namespace
 
+std::vector<int> facet_corners(const ShapeInfo& s, size_t facet) {
+  std::vector<int> corners = s.facets[facet];
+  std::erase_if(corners, [&](int a) { return a >= s.n_corners; });
+  return corners;
+}
+
 std::vector<Facet> match_facets(const Mesh& mesh, const std::vector<std::vector<std::int64_t>>& faces) {
   std::vector<Facet> found(faces.size(), {-1, -1});
   std::unordered_map<Key, std::vector<size_t>, KeyHash> index;

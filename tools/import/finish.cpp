@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/joined.hpp"
@@ -18,22 +19,13 @@ namespace {
 /// Rows of nodes move to `row`; -1 takes them out of the sets.
 void renumber(Imported& in, const std::vector<std::int64_t>& row, std::int64_t n) {
   Mesh& m = in.mesh;
-  std::map<std::int64_t, unsigned> held;
-  for (const auto& [a, bits] : in.held)
-    if (const auto b = row[static_cast<size_t>(a)]; b >= 0) held[b] |= bits;
-  in.held = std::move(held);
-  decltype(in.body_of_node) body_of_node;
-  for (auto& [a, name] : in.body_of_node)
-    if (const auto b = row[static_cast<size_t>(a)]; b >= 0) body_of_node[b] = std::move(name);
-  in.body_of_node = std::move(body_of_node);
-  decltype(in.thickness_at) thickness_at;
-  for (const auto& [a, t] : in.thickness_at)
-    if (const auto b = row[static_cast<size_t>(a)]; b >= 0) thickness_at[b] = t;
-  in.thickness_at = std::move(thickness_at);
-  decltype(in.nodes_counted) nodes_counted;
-  for (const auto& [a, n] : in.nodes_counted)
-    if (const auto b = row[static_cast<size_t>(a)]; b >= 0) nodes_counted[b] = n;
-  in.nodes_counted = std::move(nodes_counted);
+  const auto move_keys = [&]<class Value>(std::map<std::int64_t, Value>& of_node, const auto& put) {
+    for (auto& [a, value] : std::exchange(of_node, {}))
+      if (const auto b = row[static_cast<size_t>(a)]; b >= 0) put(of_node[b], value);
+  };
+  const auto take = [](auto& to, auto& value) { to = std::move(value); };
+  move_keys(in.held, [](unsigned& to, unsigned bits) { to |= bits; });
+  move_keys(in.body_of_node, take), move_keys(in.thickness_at, take), move_keys(in.nodes_counted, take);
   std::vector<Vec3> X(n);
   std::vector<std::int64_t> id(n, -1);
   for (size_t a = 0; a < row.size(); ++a)
@@ -49,6 +41,11 @@ void renumber(Imported& in, const std::vector<std::int64_t>& row, std::int64_t n
 }
 
 }  // namespace
+
+void replace_cells(Mesh& m, Mesh&& cells) {
+  m.shape = std::move(cells.shape), m.offset = std::move(cells.offset), m.nodes = std::move(cells.nodes);
+  m.region = std::move(cells.region), m.cell_id = std::move(cells.cell_id);
+}
 
 std::int64_t merge_nodes(Imported& in, double distance) {
   const Mesh& m = in.mesh;

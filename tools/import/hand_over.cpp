@@ -38,10 +38,7 @@ namespace {
 
 }  // namespace
 
-Imported read_geo(const std::string&, const ImportOptions&) { hand_over(); }
-Imported read_step(const std::string&, const ImportOptions&) { hand_over(); }
-Imported read_brep(const std::string&, const ImportOptions&) { hand_over(); }
-Imported read_iges(const std::string&, const ImportOptions&) { hand_over(); }
+Imported read_geometry(const std::string&, const ImportOptions&) { hand_over(); }
 Imported read_exodus(const std::string&, const ImportOptions&) { hand_over(); }
 std::string face_of(const std::string&, const ImportOptions&) { hand_over(); }
 

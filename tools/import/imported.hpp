@@ -147,12 +147,16 @@ class SetNames {
  private:
   bool taken(const std::string& name) const;
   std::string free_name(const std::string& name, const std::string& suffix);
+  template <class Members>
+  std::string add(std::map<std::string, Members>& sets, const char* kind, const std::string& name, Members members, const char* suffix);
   Imported& in_;
 };
 
 /// A name fit for a file: no '/', no blanks at its ends, never empty.
 std::string clean_name(const std::string& name);
 
+/// Local numbers of the corners of a facet, in its outward order.
+std::vector<int> facet_corners(const ShapeInfo& shape, size_t facet);
 /// Faces given by their nodes, found among the facets of the cells.  A face between two cells goes to the one whose outward facet turns the
 /// same way.  facet[i].cell is -1 where no cell has face i.
 std::vector<Facet> match_facets(const Mesh& mesh, const std::vector<std::vector<std::int64_t>>& faces);
@@ -187,10 +191,7 @@ Imported read_med(const std::string& path, const ImportOptions& options);
 Imported read_exodus(const std::string& path, const ImportOptions& options);
 Imported read_medit(const std::string& path, const ImportOptions& options);
 Imported read_stl(const std::string& path, const ImportOptions& options);
-Imported read_geo(const std::string& path, const ImportOptions& options);
-Imported read_step(const std::string& path, const ImportOptions& options);
-Imported read_brep(const std::string& path, const ImportOptions& options);
-Imported read_iges(const std::string& path, const ImportOptions& options);
+Imported read_geometry(const std::string& path, const ImportOptions& options);
 
 /// The face of a section of beams, meshed or read, as the text of a .msh file in the unit of the file.  Error where there is no surface.
 std::string face_of(const std::string& path, const ImportOptions& options);
@@ -223,6 +224,8 @@ void thicken(Imported& in, const std::string& file);
 void divide_surfaces(Imported& in, const std::string& file);
 /// Before: whether that will happen.
 bool is_divided(const Imported& in);
+/// These in the place of the cells of a mesh.
+void replace_cells(Mesh& mesh, Mesh&& cells);
 /// Nodes of no cell are dropped, from the sets too; returns how many.
 std::int64_t drop_unused(Imported& in);
 /// Adds the sets of --set, by the words and the code of [set.NAME] of scenes; lengths are still in the unit of the file.

@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/units.hpp"
 #include "import/crash_guard.hpp"
+#include "import/data_line.hpp"
 #include "import/grouped.hpp"
 
 namespace hilo {
@@ -55,11 +56,7 @@ const std::vector<MedKind>& med_kinds() {
 }
 
 /// A text of fixed width that blanks or zeros fill up.
-std::string trimmed(const char* text, size_t width) {
-  std::string s(text, strnlen(text, width));
-  while (!s.empty() && s.back() == ' ') s.pop_back();
-  return s.substr(std::min(s.find_first_not_of(' '), s.size()));
-}
+std::string trimmed(const char* text, size_t width) { return std::string(strip({text, strnlen(text, width)})); }
 
 /// Closes what a damaged file left open, while nobody hears what the library says of it.
 struct LeftOpen {

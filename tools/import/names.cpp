@@ -123,46 +123,37 @@ std::string SetNames::free_name(const std::string& raw, const std::string& suffi
   return free;
 }
 
-std::string SetNames::facets(const std::string& name, std::vector<Facet> members) {
-  sort_unique(members, [](const Facet& f) { return std::pair(f.cell, f.facet); });
+template <class Members>
+std::string SetNames::add(std::map<std::string, Members>& sets, const char* kind, const std::string& name, Members members,
+                          const char* suffix) {
   if (members.empty()) {
-    in_.notes.push_back(fmt::format("facet set \"{}\" is empty: left out", name));
+    in_.notes.push_back(fmt::format("{} set \"{}\" is empty: left out", kind, name));
     return "";
   }
-  const std::string free = free_name(name, "_facets");
-  in_.mesh.facet_sets[free] = std::move(members);
+  const std::string free = free_name(name, suffix);
+  sets[free] = std::move(members);
   return free;
+}
+
+std::string SetNames::facets(const std::string& name, std::vector<Facet> members) {
+  sort_unique(members, [](const Facet& f) { return std::pair(f.cell, f.facet); });
+  return add(in_.mesh.facet_sets, "facet", name, std::move(members), "_facets");
 }
 
 std::string SetNames::nodes(const std::string& name, std::vector<std::int64_t> members) {
   sort_unique(members);
-  if (members.empty()) {
-    in_.notes.push_back(fmt::format("node set \"{}\" is empty: left out", name));
-    return "";
-  }
   const std::string same = clean_name(name);
-  if (in_.mesh.find_region(same) >= 0 && in_.mesh.nodes_of(same, name) == members) return same;
-  const std::string free = free_name(name, "_nodes");
-  in_.mesh.node_sets[free] = std::move(members);
-  return free;
+  if (!members.empty() && in_.mesh.find_region(same) >= 0 && in_.mesh.nodes_of(same, name) == members) return same;
+  return add(in_.mesh.node_sets, "node", name, std::move(members), "_nodes");
 }
 
 std::string SetNames::cells(const std::string& name, std::vector<std::int64_t> members) {
   sort_unique(members);
-  if (members.empty()) {
-    in_.notes.push_back(fmt::format("element set \"{}\" is empty: left out", name));
-    return "";
-  }
   const Mesh& m = in_.mesh;
-  if (const int r = m.find_region(clean_name(name)); r >= 0) {
-    const auto in_r = std::count(m.region.begin(), m.region.end(), r);
-    if (in_r == static_cast<std::ptrdiff_t>(members.size()) &&
-        std::all_of(members.begin(), members.end(), [&](std::int64_t c) { return m.region[c] == r; }))
+  if (const int r = m.find_region(clean_name(name)); r >= 0 && !members.empty())
+    if (std::ranges::count(m.region, r) == std::ssize(members) && std::ranges::all_of(members, [&](auto c) { return m.region[c] == r; }))
       return clean_name(name);
-  }
-  const std::string free = free_name(name, "_cells");
-  in_.mesh.cell_sets[free] = std::move(members);
-  return free;
+  return add(in_.mesh.cell_sets, "element", name, std::move(members), "_cells");
 }
 
 }  // namespace hilo

@@ -61,29 +61,25 @@ void raise_order(Imported& in) {
   }
   std::int64_t next_id = m.node_id.empty() ? 1 : *std::max_element(m.node_id.begin(), m.node_id.end()) + 1;
   std::vector<std::array<std::int64_t, 2>> ends_of;  // of the new nodes
-  std::vector<std::int64_t> nodes, offset{0};
+  Mesh cells;
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
     const auto s = static_cast<Shape>(m.shape[c]);
     const auto old = m.cell(c);
-    nodes.insert(nodes.end(), old.begin(), old.end());
+    std::vector<std::int64_t> nodes(old.begin(), old.end());
     if (quadratic(s) == s && info(s).dimension == 3 && info(s).n_nodes == info(s).n_corners)
       throw Error("", fmt::format("--order 2: {} has no quadratic form here", info(s).name), "", Exit::usage);
-    if (quadratic(s) != s) {
-      for (const auto& [i, j] : edges_of(s)) {
-        const auto [it, fresh] = middle.try_emplace(ends(old[i], old[j]), m.n_nodes());
-        if (fresh) {
-          m.X.push_back((m.X[old[i]] + m.X[old[j]]) / 2);
-          m.node_id.push_back(next_id++);
-          ends_of.push_back({old[i], old[j]});
-        }
-        nodes.push_back(it->second);
+    for (const auto& [i, j] : quadratic(s) != s ? edges_of(s) : Edges{}) {
+      const auto [it, fresh] = middle.try_emplace(ends(old[i], old[j]), m.n_nodes());
+      if (fresh) {
+        m.X.push_back((m.X[old[i]] + m.X[old[j]]) / 2);
+        m.node_id.push_back(next_id++);
+        ends_of.push_back({old[i], old[j]});
       }
-      m.shape[c] = static_cast<std::uint8_t>(quadratic(s));
+      nodes.push_back(it->second);
     }
-    offset.push_back(static_cast<std::int64_t>(nodes.size()));
+    cells.add_cell(quadratic(s), nodes, m.region[c], m.cell_id[c]);
   }
-  m.nodes = std::move(nodes);
-  m.offset = std::move(offset);
+  replace_cells(m, std::move(cells));
   // a set that holds both ends of an edge holds its middle
   std::vector<char> inside(n_linear);
   for (auto& [name, set] : m.node_sets) {

@@ -47,10 +47,9 @@ void tell_pyramids(Imported& in, std::int64_t n) {
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
     const ShapeInfo& s = info(m.shape[c]);
     if (s.dimension != 3) continue;
-    for (const auto& facet : s.facets) {
+    for (size_t f = 0; f < s.facets.size(); ++f) {
       std::vector<std::int64_t> corners;
-      for (const int a : facet)
-        if (a < s.n_corners) corners.push_back(m.cell(c)[a]);
+      for (const int a : facet_corners(s, f)) corners.push_back(m.cell(c)[a]);
       if (corners.size() == 4) quadrangles.insert(key(corners));
     }
   }

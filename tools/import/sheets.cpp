@@ -175,6 +175,11 @@ const std::vector<Sheets::Part>& Sheets::at(std::int64_t node) const {
   return it == at_.end() ? none : it->second;
 }
 
+const std::vector<Sheets::Part>& sheets_at(const Imported& in, std::int64_t row) {
+  static const std::vector<Sheets::Part> none;
+  return in.sheets ? in.sheets->at(row) : none;
+}
+
 bool needs_body(const std::vector<Sheets::Part>& parts, const ShellSupport& s) {
   const bool bears = std::ranges::all_of(parts, [&](const Sheets::Part& p) { return bears_support(s.held, p.normal); });
   const bool whole = (s.held & 7) == 7;
@@ -185,6 +190,13 @@ size_t count_nodes(const std::vector<Sheets::Part>& parts, bool of_solid) { retu
 
 bool is_flat(const std::vector<Sheets::Part>& parts) {
   return std::ranges::all_of(parts, [&](const Sheets::Part& p) { return p.normal.cross(parts.front().normal).norm() < 1e-3; });
+}
+
+bool drop_drilling(const std::vector<Sheets::Part>& parts, Vec3& M) {
+  const Vec3& n = parts.front().normal;
+  const bool some = std::abs(M.dot(n)) > 1e-6 * M.norm();
+  M -= n * n.dot(M);
+  return some;
 }
 
 bool bears_support(unsigned held, const Vec3& n) {

@@ -40,6 +40,9 @@ class Sheets {
   std::vector<std::int64_t> folded_;
 };
 
+/// The sheets that a row of the deck's mesh is in, where shells become pairs of nodes; none elsewhere.
+const std::vector<Sheets::Part>& sheets_at(const Imported& in, std::int64_t row);
+
 /// Whether a pair of nodes along n can stand for a support of a shell's node: it holds both nodes or none, so (turn x n)_i is held with
 /// place i.  `held`: bits 0 to 5.
 bool bears_support(unsigned held, const Vec3& n);
@@ -56,5 +59,7 @@ bool needs_body(const std::vector<Sheets::Part>& parts, const ShellSupport& s);
 size_t count_nodes(const std::vector<Sheets::Part>& parts, bool of_solid);
 /// Whether the sheets have one normal, about which no turn is resisted.
 bool is_flat(const std::vector<Sheets::Part>& parts);
+/// Takes out of a moment what is about that normal; whether there was some.
+bool drop_drilling(const std::vector<Sheets::Part>& parts, Vec3& moment);
 
 }  // namespace hilo

@@ -132,12 +132,12 @@ class Thickening {
 
   void rebuild() {
     Mesh& m = m_;
-    std::vector<std::int64_t> nodes, offset{0};
-    for (std::int64_t c = 0, next = 0; c < m.n_cells(); ++c) {
+    Mesh cells;
+    for (std::int64_t c = 0; c < m.n_cells(); ++c) {
       const auto own = m.cell(c);
       std::vector<std::int64_t> cell(own.begin(), own.end());
-      if (next < static_cast<std::int64_t>(cells_.size()) && cells_[next] == c) {
-        ++next;
+      const bool is_shell = std::ranges::binary_search(cells_, c);
+      if (is_shell) {
         if (sheets_.is_turned(c)) std::reverse(cell.begin(), cell.end());
         std::vector<std::int64_t> above;
         for (auto& a : cell) {
@@ -145,12 +145,10 @@ class Thickening {
           above.push_back(pair.above), a = pair.below;
         }
         cell.insert(cell.end(), above.begin(), above.end());
-        m.shape[c] = static_cast<std::uint8_t>(shell8);
       }
-      nodes.insert(nodes.end(), cell.begin(), cell.end());
-      offset.push_back(static_cast<std::int64_t>(nodes.size()));
+      cells.add_cell(is_shell ? shell8 : static_cast<Shape>(m.shape[c]), cell, m.region[c], m.cell_id[c]);
     }
-    m.nodes = std::move(nodes), m.offset = std::move(offset);
+    replace_cells(m, std::move(cells));
     for (auto& [name, set] : m.node_sets) {
       for (size_t k = 0, n = set.size(); k < n; ++k)
         if (const auto all = all_.find(set[k]); all != all_.end()) set.insert(set.end(), all->second.begin(), all->second.end());

@@ -16,40 +16,38 @@
 namespace hilo {
 namespace {
 
-/// A finite-element descriptor: dimension, our shape of solids and bars, the nodes: ours[i] = theirs[p[i]]; faces keep their corners.
+/// Finite-element descriptors: dimension, our shape of solids and bars, the nodes: ours[i] = theirs[p[i]]; faces keep their corners.
 struct UnvKind {
-  int id, dimension;
+  std::vector<int> ids;
+  int dimension;
   Shape shape;
   std::vector<int> p;
   size_t n_nodes;
 };
 const UnvKind* unv_kind(int id) {
   // quadratic cells are listed ring by ring: corner, middle, corner, ...
-  static const std::vector<int> line{0, 1}, line3{0, 2}, tri{0, 1, 2}, tri6{0, 2, 4}, quad{0, 1, 2, 3}, quad8{0, 2, 4, 6};
   static const std::vector<UnvKind> kinds = {
-      {11, 1, Shape::bar2, line, 2},
-      {21, 1, Shape::bar2, line, 2},
-      {22, 1, Shape::bar2, line3, 3},
-      {24, 1, Shape::bar2, line3, 3},
-      {41, 2, Shape::bar2, tri, 3},
-      {91, 2, Shape::bar2, tri, 3},
-      {42, 2, Shape::bar2, tri6, 6},
-      {92, 2, Shape::bar2, tri6, 6},
-      {44, 2, Shape::bar2, quad, 4},
-      {94, 2, Shape::bar2, quad, 4},
-      {45, 2, Shape::bar2, quad8, 8},
-      {95, 2, Shape::bar2, quad8, 8},
-      {111, 3, Shape::tet4, {0, 1, 2, 3}, 4},
-      {112, 3, Shape::wedge6, {0, 1, 2, 3, 4, 5}, 6},
-      {115, 3, Shape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}, 8},
-      {118, 3, Shape::tet10, {0, 2, 4, 9, 1, 3, 5, 6, 7, 8}, 10},
-      {113, 3, Shape::wedge15, {0, 2, 4, 9, 11, 13, 1, 3, 5, 10, 12, 14, 6, 7, 8}, 15},
-      {116, 3, Shape::hex20r, {0, 2, 4, 6, 12, 14, 16, 18, 1, 3, 5, 7, 13, 15, 17, 19, 8, 9, 10, 11}, 20},
+      {{11, 21}, 1, Shape::bar2, {0, 1}, 2},
+      {{22, 24}, 1, Shape::bar2, {0, 2}, 3},
+      {{41, 91}, 2, Shape::bar2, {0, 1, 2}, 3},
+      {{42, 92}, 2, Shape::bar2, {0, 2, 4}, 6},
+      {{44, 94}, 2, Shape::bar2, {0, 1, 2, 3}, 4},
+      {{45, 95}, 2, Shape::bar2, {0, 2, 4, 6}, 8},
+      {{111}, 3, Shape::tet4, {0, 1, 2, 3}, 4},
+      {{112}, 3, Shape::wedge6, {0, 1, 2, 3, 4, 5}, 6},
+      {{115}, 3, Shape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}, 8},
+      {{118}, 3, Shape::tet10, {0, 2, 4, 9, 1, 3, 5, 6, 7, 8}, 10},
+      {{113}, 3, Shape::wedge15, {0, 2, 4, 9, 11, 13, 1, 3, 5, 10, 12, 14, 6, 7, 8}, 15},
+      {{116}, 3, Shape::hex20r, {0, 2, 4, 6, 12, 14, 16, 18, 1, 3, 5, 7, 13, 15, 17, 19, 8, 9, 10, 11}, 20},
   };
   for (const auto& k : kinds)
-    if (k.id == id) return &k;
+    if (std::ranges::find(k.ids, id) != k.ids.end()) return &k;
   return nullptr;
 }
+
+/// Datasets of groups, and how many numbers each member of a group has there.
+const std::map<std::string, size_t> group_datasets{{"2467", 4}, {"2477", 4}, {"2452", 4}, {"2435", 4},
+                                                   {"2429", 2}, {"2430", 2}, {"2432", 2}};
 
 class UnvReader {
  public:
@@ -60,8 +58,14 @@ class UnvReader {
       if (l_.fields.size() != 1 || l_.text(0) != "-1") continue;
       if (!line()) break;
       const std::string set(l_.text(0));
-      if (const auto known = datasets().find(set); known != datasets().end())
-        known->second(*this);
+      if (set == "2411" || set == "781")
+        nodes();
+      else if (set == "2412")
+        elements();
+      else if (set == "164")
+        units();
+      else if (const auto group = group_datasets.find(set); group != group_datasets.end())
+        groups(group->second);
       else {
         in_.skip("dataset " + set, l_.place(), 1, false);
         while (more()) {
@@ -74,26 +78,6 @@ class UnvReader {
   }
 
  private:
-  /// Datasets by number, and what reads them.
-  static const std::map<std::string, void (*)(UnvReader&)>& datasets() {
-    using R = UnvReader;
-    static const auto nodes = [](R& r) { r.nodes(); };
-    static const auto fours = [](R& r) { r.groups(4); };  // four numbers for each member
-    static const auto twos = [](R& r) { r.groups(2); };
-    static const std::map<std::string, void (*)(R&)> table{{"2411", nodes},
-                                                           {"781", nodes},
-                                                           {"2412", [](R& r) { r.elements(); }},
-                                                           {"2467", fours},
-                                                           {"2477", fours},
-                                                           {"2452", fours},
-                                                           {"2435", fours},
-                                                           {"2429", twos},
-                                                           {"2430", twos},
-                                                           {"2432", twos},
-                                                           {"164", [](R& r) { r.units(); }}};
-    return table;
-  }
-
   /// The next line, cut at blanks.
   bool line() {
     if (at_ >= text_.size()) return false;
@@ -180,8 +164,7 @@ class UnvReader {
       GroupedMesh::Group g;
       const auto number = l_.integer(0), count = l_.integer(7);
       must();
-      const auto first = raw_.find_first_not_of(' '), last = raw_.find_last_not_of(' ');
-      g.name = first == std::string_view::npos ? fmt::format("group_{}", number) : std::string(raw_.substr(first, last - first + 1));
+      g.name = strip(raw_).empty() ? fmt::format("group_{}", number) : std::string(strip(raw_));
       for (std::int64_t got = 0; got < count;) {
         must();
         for (size_t i = 0; i + 1 < l_.fields.size(); i += width, ++got) {

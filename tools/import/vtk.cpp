@@ -81,9 +81,9 @@ void turn_wedges(Imported& in) {
 }  // namespace
 
 Imported read_vtk(const std::string& path, const ImportOptions& options) {
-  const std::string bytes = read_gz(path, "");
+  std::string bytes = read_gz(path, "");
   const bool xml = bytes.find("<VTKFile") < 1000;
-  const VtkGrid g = xml ? read_vtu(path, bytes) : read_vtk_legacy(path, bytes);
+  const VtkGrid g = xml ? read_vtu(path, std::move(bytes)) : read_vtk_legacy(path, std::move(bytes));
   check(g, path);
   Imported in;
   Mesh& m = in.mesh;

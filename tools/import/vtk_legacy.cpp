@@ -6,40 +6,27 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <type_traits>
 
 #include "base/error.hpp"
 #include "import/data_line.hpp"
+#include "import/text_input.hpp"
 #include "import/vtk_grid.hpp"
 
 namespace hilo {
 namespace {
 
 /// Words and big-endian numbers, one after the other.
-class Stream {
+class Stream : public TextInput {
  public:
-  Stream(const std::string& path, const std::string& bytes) : path_(path), s_(bytes) {}
+  using TextInput::TextInput;
   bool binary = false;
 
-  std::string line() {
-    const size_t end = std::min(s_.find('\n', at_), s_.size());
-    std::string l = s_.substr(at_, end - at_);
-    at_ = std::min(end + 1, s_.size());
-    if (!l.empty() && l.back() == '\r') l.pop_back();
-    return l;
-  }
-  std::string word() {
-    while (at_ < s_.size() && std::isspace(static_cast<unsigned char>(s_[at_]))) ++at_;
-    const size_t from = at_;
-    while (at_ < s_.size() && !std::isspace(static_cast<unsigned char>(s_[at_]))) ++at_;
-    return s_.substr(from, at_ - from);
-  }
   std::int64_t count(const std::string& what) {
-    const std::string w = word();
+    const std::string_view w = word();
     std::int64_t n = -1;
     const auto [end, bad] = std::from_chars(w.data(), w.data() + w.size(), n);
-    if (bad != std::errc() || end != w.data() + w.size() || n < 0 || n > static_cast<std::int64_t>(s_.size()))
+    if (bad != std::errc() || end != w.data() + w.size() || n < 0 || n > static_cast<std::int64_t>(text_.size()))
       fail(fmt::format("{}: expected a count, found \"{}\"", what, w));
     return n;
   }
@@ -52,12 +39,12 @@ class Stream {
   }
   template <class T>
   std::vector<T> numbers(std::int64_t n, const std::string& type) {
-    if (n < 0 || static_cast<size_t>(n) > s_.size()) fail(fmt::format("an array of {} numbers in a file of {} bytes", n, s_.size()));
+    if (n < 0 || static_cast<size_t>(n) > text_.size()) fail(fmt::format("an array of {} numbers in a file of {} bytes", n, text_.size()));
     std::vector<T> v;
     v.reserve(static_cast<size_t>(n));
     if (!binary) {
       for (std::int64_t i = 0; i < n; ++i) {
-        const std::string w = word();
+        const std::string_view w = word();
         double x = 0;
         const char* first = w.data() + (!w.empty() && w[0] == '+');
         const auto [end, bad] = std::from_chars(first, w.data() + w.size(), x);
@@ -67,66 +54,39 @@ class Stream {
       }
       return v;
     }
-    if (at_ < s_.size() && s_[at_] == '\r') ++at_;
-    if (at_ < s_.size() && s_[at_] == '\n') ++at_;
-    const auto put = [&]<class U>(U) {
-      if (at_ + static_cast<size_t>(n) * sizeof(U) > s_.size()) fail("the file ends in the middle of an array");
-      for (std::int64_t i = 0; i < n; ++i) {
-        unsigned char b[sizeof(U)];
-        for (size_t k = 0; k < sizeof(U); ++k)
-          b[std::endian::native == std::endian::little ? sizeof(U) - 1 - k : k] = static_cast<unsigned char>(s_[at_ + k]);
-        U x;
-        std::memcpy(&x, b, sizeof(U));
-        v.push_back(as<T>(x));
-        at_ += sizeof(U);
-      }
-    };
-    if (type == "double")
-      put(double{});
-    else if (type == "float")
-      put(float{});
-    else if (type == "int")
-      put(std::int32_t{});
-    else if (type == "unsigned_int")
-      put(std::uint32_t{});
-    else if (type == "long" || type == "vtkidtype" || type == "vtktypeint64")
-      put(std::int64_t{});
-    else if (type == "unsigned_long")
-      put(std::uint64_t{});
-    else if (type == "short")
-      put(std::int16_t{});
-    else if (type == "unsigned_short")
-      put(std::uint16_t{});
-    else if (type == "char" || type == "signed_char")
-      put(std::int8_t{});
-    else if (type == "unsigned_char")
-      put(std::uint8_t{});
-    else
-      fail(fmt::format("unknown type \"{}\"", type));
+    if (at_ < text_.size() && text_[at_] == '\r') ++at_;
+    if (at_ < text_.size() && text_[at_] == '\n') ++at_;
+    static const std::map<std::string, std::string_view> types{
+        {"double", "Float64"},     {"float", "Float32"},         {"int", "Int32"},          {"unsigned_int", "UInt32"},
+        {"long", "Int64"},         {"vtkidtype", "Int64"},       {"vtktypeint64", "Int64"}, {"unsigned_long", "UInt64"},
+        {"short", "Int16"},        {"unsigned_short", "UInt16"}, {"char", "Int8"},          {"signed_char", "Int8"},
+        {"unsigned_char", "UInt8"}};
+    const auto known = types.find(type);
+    if (known == types.end()) fail(fmt::format("unknown type \"{}\"", type));
+    with_vtk_type(known->second, [&]<class U>(U) {
+      if (at_ + static_cast<size_t>(n) * sizeof(U) > text_.size()) fail("the file ends in the middle of an array");
+      for (std::int64_t i = 0; i < n; ++i, at_ += sizeof(U))
+        v.push_back(as<T>(vtk_number<U>(text_.data() + at_, std::endian::native == std::endian::little)));
+    });
     return v;
-  }
-  [[noreturn]] void fail(const std::string& what) const {
-    const auto line = 1 + std::count(s_.begin(), s_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, s_.size())), '\n');
-    throw Error(binary ? path_ : fmt::format("{}:{}", path_, line), what);
   }
   size_t mark() const { return at_; }
   void back(size_t at) { at_ = at; }
 
  private:
-  const std::string& path_;
-  const std::string& s_;
-  size_t at_ = 0;
+  std::string place() const override { return binary ? path_ : TextInput::place(); }
 };
 
-std::string lower(std::string s) {
+std::string lower(std::string_view text) {
+  std::string s(text);
   for (auto& c : s) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return s;
 }
 
 }  // namespace
 
-VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
-  Stream s(path, bytes);
+VtkGrid read_vtk_legacy(const std::string& path, std::string bytes) {
+  Stream s(path, std::move(bytes));
   VtkGrid g;
   if (s.line().rfind("# vtk DataFile Version", 0) != 0) throw Error(path + ":1", "not a VTK file: no \"# vtk DataFile Version\"");
   s.line();
@@ -179,7 +139,7 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
       of_cells = w == "CELL_DATA", of_nodes = !of_cells;
       n_data = s.count(w);
     } else if (w == "SCALARS") {
-      const std::string rest = s.line();  // name type [components]
+      const std::string rest(s.line());  // name type [components]
       char name[256] = "", type[64] = "";
       int components = 1;
       if (std::sscanf(rest.c_str(), "%255s %63s %d", name, type, &components) < 2) s.fail("SCALARS: expected name and type");
@@ -192,7 +152,7 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
       auto v = s.numbers<double>(n_data * components, lower(type));
       keep(name, components, std::move(v));
     } else if (w == "VECTORS" || w == "NORMALS" || w == "TENSORS") {
-      const std::string name = s.word();
+      const std::string name(s.word());
       keep(name, 3, {});
       const auto type = lower(s.word());
       s.numbers<double>(n_data * (w == "TENSORS" ? 9 : 3), type);
@@ -200,7 +160,7 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
       s.word();
       const auto arrays = s.count(w);
       for (std::int64_t i = 0; i < arrays; ++i) {
-        std::string name = s.word();
+        std::string name(s.word());
         while (name == "METADATA") {  // runs to an empty line
           s.line();
           while (!s.line().empty()) {

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "import/text_input.hpp"
 #include "import/vtk_grid.hpp"
 
 namespace hilo {
@@ -22,9 +23,9 @@ struct Tag {
   bool empty = false;
 };
 
-class Vtu {
+class Vtu : TextInput {
  public:
-  Vtu(const std::string& path, const std::string& bytes) : path_(path), s_(bytes) {}
+  using TextInput::TextInput;
 
   VtkGrid read() {
     Tag t;
@@ -56,26 +57,21 @@ class Vtu {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    const auto line = 1 + std::count(s_.begin(), s_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, s_.size())), '\n');
-    throw Error(fmt::format("{}:{}", path_, line), what);
-  }
-
   bool next(Tag& t) {
     for (;;) {
-      const size_t open = s_.find('<', at_);
+      const size_t open = text_.find('<', at_);
       if (open == std::string::npos) return false;
-      if (s_.compare(open, 4, "<!--") == 0) {
-        at_ = std::min(s_.find("-->", open), s_.size());
+      if (text_.compare(open, 4, "<!--") == 0) {
+        at_ = std::min(text_.find("-->", open), text_.size());
         continue;
       }
-      const size_t close = s_.find('>', open);
+      const size_t close = text_.find('>', open);
       if (close == std::string::npos) fail("the file ends inside a tag");
       at_ = close + 1;
-      if (s_[open + 1] == '?' || s_[open + 1] == '!') continue;
+      if (text_[open + 1] == '?' || text_[open + 1] == '!') continue;
       t = {};
       t.end = at_;
-      std::string body = s_.substr(open + 1, close - open - 1);
+      std::string body = text_.substr(open + 1, close - open - 1);
       t.empty = !body.empty() && body.back() == '/';
       size_t i = body.find_first_of(" \t\r\n/", 1);
       t.name = body.substr(0, i);
@@ -93,11 +89,11 @@ class Vtu {
   }
 
   void find_appended() {
-    const size_t tag = s_.find("<AppendedData");
+    const size_t tag = text_.find("<AppendedData");
     if (tag == std::string::npos) return;
-    const size_t close = s_.find('>', tag);
-    appended_raw_ = s_.substr(tag, close - tag).find("raw") != std::string::npos;
-    appended_ = s_.find('_', close);
+    const size_t close = text_.find('>', tag);
+    appended_raw_ = text_.substr(tag, close - tag).find("raw") != std::string::npos;
+    appended_ = text_.find('_', close);
     if (appended_ != std::string::npos) ++appended_;
   }
 
@@ -113,8 +109,8 @@ class Vtu {
     std::string out;
     unsigned word = 0;
     int bits = 0;
-    for (size_t i = at; i < s_.size() && out.size() < need; ++i) {
-      const auto c = static_cast<unsigned char>(s_[i]);
+    for (size_t i = at; i < text_.size() && out.size() < need; ++i) {
+      const auto c = static_cast<unsigned char>(text_[i]);
       if (std::isspace(c)) continue;
       if (c == '=') break;
       if (value[c] < 0) break;
@@ -127,8 +123,8 @@ class Vtu {
   /// Where base64 text of `n` bytes that starts at `at` ends.
   size_t behind_base64(size_t at, size_t n) const {
     size_t letters = (n + 2) / 3 * 4;
-    while (at < s_.size() && letters > 0)
-      if (!std::isspace(static_cast<unsigned char>(s_[at++]))) --letters;
+    while (at < text_.size() && letters > 0)
+      if (!std::isspace(static_cast<unsigned char>(text_[at++]))) --letters;
     return at;
   }
   std::string bytes(size_t& at, size_t n, bool raw) const {
@@ -137,9 +133,9 @@ class Vtu {
       at = behind_base64(at, n);
       return b;
     }
-    if (at > s_.size() || n > s_.size() - at) fail("the file ends in the middle of an array");
+    if (at > text_.size() || n > text_.size() - at) fail("the file ends in the middle of an array");
     at += n;
-    return s_.substr(at - n, n);
+    return text_.substr(at - n, n);
   }
   std::uint64_t header(const std::string& b, size_t i) const {
     const size_t size = wide_ ? 8 : 4;
@@ -189,15 +185,15 @@ class Vtu {
     std::vector<double> v;
     if (format == "ascii") {
       size_t i = t.end;
-      const size_t stop = std::min(s_.find('<', i), s_.size());
+      const size_t stop = std::min(text_.find('<', i), text_.size());
       while (i < stop) {
-        while (i < stop && std::isspace(static_cast<unsigned char>(s_[i]))) ++i;
+        while (i < stop && std::isspace(static_cast<unsigned char>(text_[i]))) ++i;
         if (i >= stop) break;
         double x;
-        const auto [end, bad] = std::from_chars(s_.data() + i, s_.data() + stop, x);
+        const auto [end, bad] = std::from_chars(text_.data() + i, text_.data() + stop, x);
         if (bad != std::errc()) fail(fmt::format("DataArray \"{}\": not a number", t.attributes["Name"]));
         v.push_back(x);
-        i = static_cast<size_t>(end - s_.data());
+        i = static_cast<size_t>(end - text_.data());
       }
       return v;
     }
@@ -209,37 +205,10 @@ class Vtu {
       b = block(t.end, false);
     else
       fail(fmt::format("DataArray format \"{}\" is not read", format));
-    const auto put = [&]<class U>(U) {
-      for (size_t i = 0; i + sizeof(U) <= b.size(); i += sizeof(U)) {
-        char raw[sizeof(U)];
-        for (size_t k = 0; k < sizeof(U); ++k) raw[swap_ ? sizeof(U) - 1 - k : k] = b[i + k];
-        U x;
-        std::memcpy(&x, raw, sizeof(U));
-        v.push_back(static_cast<double>(x));
-      }
-    };
-    if (type == "Float64")
-      put(double{});
-    else if (type == "Float32")
-      put(float{});
-    else if (type == "Int64")
-      put(std::int64_t{});
-    else if (type == "UInt64")
-      put(std::uint64_t{});
-    else if (type == "Int32")
-      put(std::int32_t{});
-    else if (type == "UInt32")
-      put(std::uint32_t{});
-    else if (type == "Int16")
-      put(std::int16_t{});
-    else if (type == "UInt16")
-      put(std::uint16_t{});
-    else if (type == "Int8")
-      put(std::int8_t{});
-    else if (type == "UInt8")
-      put(std::uint8_t{});
-    else
-      fail(fmt::format("DataArray type \"{}\" is not read", type));
+    const bool known = with_vtk_type(type, [&]<class U>(U) {
+      for (size_t i = 0; i + sizeof(U) <= b.size(); i += sizeof(U)) v.push_back(static_cast<double>(vtk_number<U>(&b[i], swap_)));
+    });
+    if (!known) fail(fmt::format("DataArray type \"{}\" is not read", type));
     return v;
   }
 
@@ -266,14 +235,12 @@ class Vtu {
     }
   }
 
-  const std::string& path_;
-  const std::string& s_;
-  size_t at_ = 0, appended_ = std::string::npos;
+  size_t appended_ = std::string::npos;
   bool appended_raw_ = false, swap_ = false, wide_ = false, compressed_ = false;
 };
 
 }  // namespace
 
-VtkGrid read_vtu(const std::string& path, const std::string& bytes) { return Vtu(path, bytes).read(); }
+VtkGrid read_vtu(const std::string& path, std::string bytes) { return Vtu(path, std::move(bytes)).read(); }
 
 }  // namespace hilo

@@ -5,24 +5,15 @@
 
 #include <set>
 
-#include "base/joined.hpp"
+#include "model/mesh_pieces.hpp"
 
 namespace hilo {
 
 std::vector<std::string> loose_pieces(const Mesh& mesh, const std::vector<Fidelity>& fidelity) {
-  Joined<std::int64_t> nodes(mesh.X.size());
-  for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
-    for (const std::int64_t i : mesh.cell(c)) nodes.join(i, mesh.cell(c)[0]);
-  std::vector<std::int64_t> of_block(mesh.block_name.size(), -1);
-  for (size_t i = 0; i < mesh.block.size(); ++i)
-    if (mesh.block[i] >= 0) {
-      auto& first = of_block[static_cast<size_t>(mesh.block[i])];
-      if (first < 0) first = static_cast<std::int64_t>(i);
-      nodes.join(static_cast<std::int64_t>(i), first);
-    }
+  const auto piece = pieces_of(mesh);
   std::vector<std::set<std::int64_t>> pieces(mesh.region_name.size());
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
-    if (fidelity[mesh.region[c]] != Fidelity::rigid) pieces[mesh.region[c]].insert(nodes.root(mesh.cell(c)[0]));
+    if (fidelity[mesh.region[c]] != Fidelity::rigid) pieces[mesh.region[c]].insert(piece[mesh.cell(c)[0]]);
   std::vector<std::string> out;
   for (size_t r = 0; r < pieces.size(); ++r)
     if (pieces[r].size() > 1)

@@ -19,11 +19,7 @@ namespace {
 
 std::vector<std::int64_t> rows(const BdfDeck& deck, const std::vector<std::int64_t>& ids, const BdfDeck::Cell& r) {
   std::vector<std::int64_t> nodes;
-  for (const auto id : ids) {
-    const auto a = deck.row.find(id);
-    if (a == deck.row.end()) throw Error(r.place, fmt::format("element {} names node {}, which does not exist", r.id, id));
-    nodes.push_back(a->second);
-  }
+  for (const auto id : ids) nodes.push_back(deck.row_of(id, r.place, "element", r.id));
   return nodes;
 }
 
@@ -44,18 +40,10 @@ void settle_densities(BdfDeck& deck, Imported& in) {
 }
 
 /// The sets of one kind that no subcase takes.
-template <class Lines, class Sums>
-void tell_unused(const Lines& lines, const Sums& sums, const std::set<std::int64_t>& chosen, const char* what, Imported& in) {
-  std::set<std::int64_t> used = chosen;
-  for (const auto& [id, sum] : sums)
-    if (chosen.contains(id)) {
-      if constexpr (requires { sum.sets; })
-        used.insert(sum.sets.begin(), sum.sets.end());
-      else
-        for (const auto& [factor, part] : sum.parts) used.insert(part);
-    }
-  for (const auto& [id, list] : lines)
-    if (!used.contains(id))
+template <class Line>
+void tell_unused(const BdfSets<Line>& sets, const std::set<std::int64_t>& chosen, const char* what, Imported& in) {
+  for (const auto& [id, list] : sets.lines)
+    if (std::ranges::none_of(chosen, [&, id = id](std::int64_t one) { return sets.takes(one, id); }))
       in.skip(fmt::format("{} of a set that no subcase uses", what), list.front().place, static_cast<std::int64_t>(list.size()));
 }
 
@@ -70,11 +58,11 @@ void join_told(const BdfDeck& deck, const std::vector<BdfCase>& cases, Imported&
   in.not_read = std::move(all);
   std::set<std::int64_t> load, spc, mpc, glue, contact;
   for (const BdfCase& c : cases) load.insert(c.load), spc.insert(c.spc), mpc.insert(c.mpc), glue.insert(c.glue), contact.insert(c.contact);
-  tell_unused(deck.loads, deck.load_sums, load, "loads", in);
-  tell_unused(deck.supports, deck.support_sums, spc, "supports", in);
-  tell_unused(deck.ties, deck.tie_sums, mpc, "MPC", in);
-  tell_unused(deck.glue, deck.glue_sums, glue, "BGSET", in);
-  tell_unused(deck.contacts, deck.contact_sums, contact, "BCTSET", in);
+  tell_unused(deck.loads, load, "loads", in);
+  tell_unused(deck.supports, spc, "supports", in);
+  tell_unused(deck.ties, mpc, "MPC", in);
+  tell_unused(deck.glue, glue, "BGSET", in);
+  tell_unused(deck.contacts, contact, "BCTSET", in);
   std::set<std::string> notes;
   std::erase_if(in.notes, [&](const std::string& note) { return !notes.insert(note).second; });
 }
@@ -99,14 +87,10 @@ void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine
   Mesh& m = in.mesh;
   m.X = deck.X;
   m.node_id = deck.node_id;
-  const auto property_name = [&](std::int64_t property) {
-    const auto n = deck.property_name.find(property);
-    return n == deck.property_name.end() ? fmt::format("pid_{}", property) : n->second;
-  };
   std::map<std::int64_t, CellGroup> by_property;
   const auto group_of = [&](std::int64_t property) -> CellGroup& {
     auto& g = by_property[property];
-    g.name = property_name(property);
+    g.name = deck.name_of(property);
     return g;
   };
   for (const auto& r : deck.cells) {
@@ -148,30 +132,29 @@ void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine
   const auto tell_turn = [&](std::int64_t grid, const std::string& place) {
     const auto a = deck.row.find(grid);
     if (a == deck.row.end() || !of_thin.contains(a->second)) return;
-    if (!in.sheets || in.sheets->at(a->second).empty())  // a grid of shells that become pairs is a body where it has to turn
+    if (sheets_at(in, a->second).empty())  // a grid of shells that become pairs is a body where it has to turn
       in.skip("turns and moments of grids of shells and beams", place);
   };
-  for (const auto& [sid, lines] : deck.supports)
+  for (const auto& [sid, lines] : deck.supports.lines)
     for (const auto& l : lines)
       if (l.components & ~7u)
         for (const auto id : l.grids) tell_turn(id, l.place);
-  for (const auto& [sid, loads] : deck.loads)
+  for (const auto& [sid, loads] : deck.loads.lines)
     for (const auto& l : loads)
       if (l.kind == BdfLoad::Kind::moment) tell_turn(l.grid, l.place);
   std::vector<CellGroup> regions;
   for (auto& [pid, g] : by_property) regions.push_back(g);
   assign_regions(in, path, regions, false, {}, options);
   for (const auto& [pid, g] : by_property) {
-    const auto mid = deck.material_of.find(pid);
-    const auto mat = mid == deck.material_of.end() ? deck.materials.end() : deck.materials.find(mid->second);
+    const auto* material = deck.material(pid);
     for (const auto c : g.cells)
-      if (mat != deck.materials.end()) m.region_data[m.region[c]] = mat->second.carried();
+      if (material) m.region_data[m.region[c]] = material->second.carried();
   }
   SetNames names(in);
-  for (auto& [pid, f] : facets) names.facets(property_name(pid), std::move(f));
+  for (auto& [pid, f] : facets) names.facets(deck.name_of(pid), std::move(f));
   const std::unordered_set<std::int64_t> of_cells(m.nodes.begin(), m.nodes.end());
   const bool all = in.n_beams == 0 && m.n_cells() > 0;  // beside bodies alone sets of their grids say nothing
-  for (const auto& [sid, lines] : deck.supports) {
+  for (const auto& [sid, lines] : deck.supports.lines) {
     std::vector<std::int64_t> nodes;
     for (const auto& l : lines)
       for (const auto id : l.grids)
@@ -206,15 +189,15 @@ void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards&
   while (entries.next(e)) {
     const auto known = by_name.find(e.name);
     if (known == by_name.end()) {
-      in.skip(e.name.substr(0, 40), e.data.place());
+      in.skip(e.name.substr(0, 40), e.place());
       continue;
     }
     const auto before = told();
-    asked = 0, e.data.asked.bits = &asked;
+    asked = 0, e.asked.bits = &asked;
     known->second->read(e, deck, in);
-    for (size_t i = 0; i < std::min<size_t>(e.data.fields.size(), 64); ++i)
-      if (!e.data.fields[i].text.empty() && (asked >> i & 1) == 0 && told() == before) {
-        in.skip(fmt::format("{}: its field {}", e.name, i + 2), e.data.place(i));
+    for (size_t i = 0; i < std::min<size_t>(e.fields.size(), 64); ++i)
+      if (!e.fields[i].text.empty() && (asked >> i & 1) == 0 && told() == before) {
+        in.skip(fmt::format("{}: its field {}", e.name, i + 2), e.place(i));
         break;
       }
   }
@@ -225,7 +208,7 @@ void resolve_ranges(BdfDeck& deck) {
   std::set<std::int64_t> pressed;
   for (const auto& s : deck.shells) pressed.insert(s.id);
   for (const auto& [id, r] : deck.cell_row) pressed.insert(id);
-  for (auto& [sid, loads] : deck.loads)
+  for (auto& [sid, loads] : deck.loads.lines)
     for (BdfLoad& l : loads)
       for (const BdfRange& r : l.ranges) {
         const size_t before = l.elements.size();
@@ -235,7 +218,7 @@ void resolve_ranges(BdfDeck& deck) {
       }
   std::vector<std::int64_t> ids = deck.node_id;
   std::ranges::sort(ids);
-  for (auto& [sid, lines] : deck.supports)
+  for (auto& [sid, lines] : deck.supports.lines)
     for (BdfSupport& s : lines)
       for (const BdfRange& r : s.ranges)
         for (auto id = std::ranges::lower_bound(ids, r.first); id != ids.end() && *id <= r.last; ++id)

@@ -22,17 +22,18 @@ struct BdfCard {
 using BdfCards = Registry<BdfCard>;
 BdfCards& bdf_cards();
 /// The families, one file each.
-std::span<const BdfCard> bdf_mesh_cards();      // GRID, CORD, solids, rods, shells, properties
-std::span<const BdfCard> bdf_thin_cards();      // shells with their properties, beams
-std::span<const BdfCard> bdf_section_cards();   // sections of beams
-std::span<const BdfCard> bdf_material_cards();  // MAT1 and what goes with it
-std::span<const BdfCard> bdf_load_cards();      // supports, loads, methods
-std::span<const BdfCard> bdf_link_cards();      // rigid elements, masses, springs
+std::vector<BdfCard> bdf_mesh_cards();      // GRID, CORD, solids, rods, shells, properties
+std::vector<BdfCard> bdf_thin_cards();      // shells with their properties, beams
+std::vector<BdfCard> bdf_section_cards();   // sections of beams
+std::vector<BdfCard> bdf_material_cards();  // MAT1 and what goes with it
+std::vector<BdfCard> bdf_load_cards();      // supports, loads, methods
+std::vector<BdfCard> bdf_link_cards();      // rigid elements, masses, springs
 
 /// The material of the number in the first field of an entry, new where none has it yet.
 DeckMaterial& material_of(const BdfEntry& e, BdfDeck& deck);
-/// The property of the number in the first field; Error where it is given already.
-void add_property(const BdfEntry& e, BdfDeck& deck, BdfThin section);
+/// The property of the number in the first field, with the material of that in another one where it is given; Error where it is there
+/// already.
+void add_property(const BdfEntry& e, BdfDeck& deck, BdfThin section, std::optional<size_t> material = 1);
 /// A shell or beam becomes a cell with its section; Error where its property says none.
 void add_thin_cell(const BdfDeck& deck, const BdfDeck::Thin& cell, std::span<const std::int64_t> rows, Imported& in);
 /// Both ends of a beam off its grids, and the direction of plane 1; Error where it lies along the beam and the section has two stiffnesses.

@@ -7,6 +7,12 @@
 
 namespace hilo {
 
+std::int64_t BdfDeck::row_of(std::int64_t grid, const std::string& place, const char* who, std::int64_t id) const {
+  const auto a = row.find(grid);
+  if (a == row.end()) throw Error(place, fmt::format("{} {} names node {}, which does not exist", who, id, grid));
+  return a->second;
+}
+
 unsigned components(const DataLine& d, size_t field) {
   unsigned bits = 0;
   for (const char c : d.text(field)) {

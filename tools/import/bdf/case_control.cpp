@@ -58,6 +58,15 @@ std::int64_t number_in(const std::string& value, const BdfCaseLine& line) {
   return n;
 }
 
+/// Which set a word chooses; null where it is no such word.
+std::int64_t BdfCase::*choice_of(const std::string& word) {
+  static const std::map<std::string, std::int64_t BdfCase::*> known{
+      {"SPC", &BdfCase::spc},   {"MPC", &BdfCase::mpc},     {"BGSET", &BdfCase::glue}, {"BCSET", &BdfCase::contact},
+      {"LOAD", &BdfCase::load}, {"METH", &BdfCase::method}, {"TSTEP", &BdfCase::step}, {"TSTEPNL", &BdfCase::step}};
+  const auto it = known.find(head_of(word) == "METH" ? "METH" : word);
+  return it == known.end() ? nullptr : it->second;
+}
+
 /// Temperatures that the subcase does not take heat nothing, so nothing expands.
 void forget_heat(Imported& in) {
   std::erase_if(in.not_read, [](const NotRead& n) { return n.what.ends_with(": thermal expansion"); });
@@ -124,20 +133,8 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
       c.title = value;
     else if (head_of(word) == "SUBT" || head_of(word) == "LABE")
       (word[0] == 'L' ? c.label : c.subtitle) = value;
-    else if (word == "SPC")
-      c.spc = number_in(value, line);
-    else if (word == "MPC")
-      c.mpc = number_in(value, line);
-    else if (word == "BGSET")
-      c.glue = number_in(value, line);
-    else if (word == "BCSET")
-      c.contact = number_in(value, line);
-    else if (word == "LOAD")
-      c.load = number_in(value, line);
-    else if (head_of(word) == "METH")
-      c.method = number_in(value, line);
-    else if (word == "TSTEP" || word == "TSTEPNL")
-      c.step = number_in(value, line);
+    else if (const auto chosen = choice_of(word))
+      c.*chosen = number_in(value, line);
     else if (word == "PARAM") {
       if (upper(line.text).find("WTMASS") != std::string::npos)
         throw Error(line.place, "PARAM WTMASS in case control is not read", "write it into the bulk data");

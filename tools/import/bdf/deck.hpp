@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a Nastran file says, in its own numbers and units, before it becomes a mesh and a scene.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -48,16 +49,30 @@ struct BdfLoad {
   bool as_share = false, turns = false;      // the former; a moment
   std::string place = {};
 };
-/// LOAD: sets of loads with factors.
+/// LOAD: sets of loads with factors; SPCADD and its like: sets.
 struct BdfSum {
   double factor = 1;
   std::vector<std::pair<double, std::int64_t>> parts;
   std::string place;
 };
-/// SPCADD: sets of supports.
-struct BdfSupportSum {
-  std::vector<std::int64_t> sets;
-  std::string place;
+/// Lines by the number of their set, and the sums of sets.
+template <class Line>
+struct BdfSets {
+  std::map<std::int64_t, std::vector<Line>> lines;
+  std::map<std::int64_t, BdfSum> sums;
+  /// Null for none.
+  const BdfSum* sum(std::int64_t id) const {
+    const auto at = sums.find(id);
+    return at == sums.end() ? nullptr : &at->second;
+  }
+  bool has(std::int64_t id) const { return lines.contains(id) || sums.contains(id); }
+  /// The one that is meant where no case control says so, or -1.
+  std::int64_t only() const { return sums.size() == 1 ? sums.begin()->first : lines.size() == 1 ? lines.begin()->first : -1; }
+  /// Whether a set is the one that is chosen, or of its sum.
+  bool takes(std::int64_t chosen, std::int64_t id) const {
+    const BdfSum* s = sum(chosen);
+    return id == chosen || (s && std::ranges::find(s->parts, id, &std::pair<double, std::int64_t>::second) != s->parts.end());
+  }
 };
 /// RBE2, RBAR: grids that follow one.
 struct BdfRigid {
@@ -199,17 +214,11 @@ struct BdfDeck {
   std::map<std::int64_t, std::vector<std::pair<double, double>>> tables;  // TABLES1: x, y
   double mass_factor = 1;                                                 // PARAM, WTMASS
   BdfCase chosen;
-  std::map<std::int64_t, std::vector<BdfSupport>> supports;     // by SID
-  std::map<std::int64_t, BdfSupportSum> support_sums;           // SPCADD
-  std::map<std::int64_t, std::vector<BdfEquation>> ties;        // MPC by SID
-  std::map<std::int64_t, BdfSupportSum> tie_sums;               // MPCADD
+  BdfSets<BdfSupport> supports;                                 // SPC, SPCADD
+  BdfSets<BdfEquation> ties;                                    // MPC, MPCADD
   std::map<std::int64_t, std::vector<BdfGlueFace>> glue_faces;  // BSURFS
-  std::map<std::int64_t, std::vector<BdfGlue>> glue;            // BGSET by GSID
-  std::map<std::int64_t, BdfSupportSum> glue_sums;              // BGADD
-  std::map<std::int64_t, std::vector<BdfGlue>> contacts;        // BCTSET by CSID
-  std::map<std::int64_t, BdfSupportSum> contact_sums;           // BCTADD
-  std::map<std::int64_t, std::vector<BdfLoad>> loads;           // by SID
-  std::map<std::int64_t, BdfSum> load_sums;                     // LOAD
+  BdfSets<BdfGlue> glue, contacts;                              // BGSET, BGADD; BCTSET, BCTADD
+  BdfSets<BdfLoad> loads;                                       // and LOAD
   std::map<std::int64_t, int> modes;                            // EIGRL, EIGR: how many, 0 not said
   std::map<std::int64_t, std::pair<double, double>> steps;      // TSTEP: end, step
   std::vector<BdfRigid> rigid;
@@ -219,6 +228,19 @@ struct BdfDeck {
   std::map<std::int64_t, double> mass_of;  // PMASS
   std::vector<BdfSpring> springs;
   std::map<std::pair<std::string, std::int64_t>, BdfSpringData> spring_data;  // by "PELAS", PDAMP, PBUSH, PBUSH1D and number
+
+  /// The material of a property, and its number; null where there is none.
+  const std::pair<const std::int64_t, DeckMaterial>* material(std::int64_t property) const {
+    const auto id = material_of.find(property);
+    const auto at = id == material_of.end() ? materials.end() : materials.find(id->second);
+    return at == materials.end() ? nullptr : &*at;
+  }
+  std::string name_of(std::int64_t property) const {
+    const auto name = property_name.find(property);
+    return name == property_name.end() ? fmt::format("pid_{}", property) : name->second;
+  }
+  /// The row of a grid; an Error where it is not there, "{who} {id} names node ...".
+  std::int64_t row_of(std::int64_t grid, const std::string& place, const char* who, std::int64_t id) const;
 };
 
 }  // namespace hilo

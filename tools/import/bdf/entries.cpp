@@ -14,20 +14,12 @@
 namespace hilo {
 namespace {
 
-std::string_view strip_blanks(std::string_view s) {
-  while (!s.empty() && s.front() == ' ') s.remove_prefix(1);
-  while (!s.empty() && s.back() == ' ') s.remove_suffix(1);
-  return s;
-}
-
 /// Tabs go to the next multiple of eight columns, in free fields they are blanks.
 std::string without_tabs(const std::string& text) {
   if (text.find('\t') == std::string::npos) return text;
   std::string out;
   out.reserve(text.size() + text.size() / 4);
-  for (size_t from = 0; from < text.size();) {
-    const size_t end = std::min(text.find('\n', from), text.size());
-    const std::string_view l = std::string_view(text).substr(from, end - from);
+  for (const std::string_view l : lines_of(text)) {
     const bool free = l.substr(0, l.find('$')).find(',') != std::string_view::npos;
     const size_t start = out.size();
     for (const char c : l)
@@ -36,7 +28,6 @@ std::string without_tabs(const std::string& text) {
       else
         out.append(free ? 1 : 8 - (out.size() - start) % 8, ' ');
     out += '\n';
-    from = end + 1;
   }
   return out;
 }
@@ -45,12 +36,10 @@ bool starts(std::string_view l, std::string_view word) { return upper(l.substr(0
 
 /// Whether executive and case control stand before the bulk entries.
 bool has_head(std::string_view text) {
-  for (size_t from = 0; from < text.size();) {
-    const size_t end = std::min(text.find('\n', from), text.size());
-    const auto l = strip_blanks(text.substr(from, end - from));
+  for (const std::string_view line : lines_of(text)) {
+    const auto l = strip(line);
     if (!l.empty() && (l.front() == 'B' || l.front() == 'b') && starts(l, "BEGINBULK")) return true;
     if (!l.empty() && (l.front() == 'C' || l.front() == 'c') && upper(l.substr(0, l.find_first_of(" $\r"))) == "CEND") return true;
-    from = end + 1;
   }
   return false;
 }
@@ -105,18 +94,18 @@ bool BdfEntries::physical(Line& l) {
 /// The name may go on over several lines between its quotes.
 void BdfEntries::include(const Line& l) {
   namespace fs = std::filesystem;
-  std::string name(strip_blanks(strip_blanks(l.text).substr(7)));
-  if (!name.empty() && name.front() == '=') name = strip_blanks(std::string_view(name).substr(1));
+  std::string name(strip(strip(l.text).substr(7)));
+  if (!name.empty() && name.front() == '=') name = strip(std::string_view(name).substr(1));
   if (!name.empty() && (name.front() == '\'' || name.front() == '"')) {
     const char quote = name.front();
     Line more;
     while (name.find(quote, 1) == std::string::npos && name.size() < 4096 && stack_.back() == l.source && physical(more))
-      name += strip_blanks(more.text);
+      name += strip(more.text);
     const size_t end = name.find(quote, 1);
     if (end == std::string::npos) throw Error(l.place(), "INCLUDE: the quote is not closed");
     name = name.substr(1, end - 1);
   } else
-    name = strip_blanks(std::string_view(name).substr(0, name.find('$')));
+    name = strip(std::string_view(name).substr(0, name.find('$')));
   if (name.empty()) throw Error(l.place(), "INCLUDE names no file");
   std::replace(name.begin(), name.end(), '\\', '/');
   const fs::path p = fs::path(name).is_absolute() ? fs::path(name) : fs::path(l.source->path).parent_path() / name;
@@ -130,7 +119,7 @@ void BdfEntries::include(const Line& l) {
 
 bool BdfEntries::line(Line& l) {
   while (physical(l)) {
-    const auto text = strip_blanks(l.text);
+    const auto text = strip(l.text);
     if (text.size() > 7 && (text.front() == 'I' || text.front() == 'i') && upper(text.substr(0, 7)) == "INCLUDE" &&
         std::string_view(" '\"=").find(text[7]) != std::string_view::npos) {
       include(l);
@@ -156,14 +145,14 @@ BdfEntries::Ends BdfEntries::cut(const Line& line, std::vector<DataField>& field
   const std::string_view l = line.text.substr(0, line.text.find('$'));
   Ends ends;
   if (l.find(',') != std::string_view::npos) {
-    ends.first = strip_blanks(l.substr(0, l.find(',')));
+    ends.first = strip(l.substr(0, l.find(',')));
     const bool large = !ends.first.empty() && (ends.first.back() == '*' || ends.first.front() == '*');
     const size_t count = large ? 4 : 8;
     size_t from = 0, n = 0;
     for (size_t i = 0; i <= l.size(); ++i) {
       if (i < l.size() && l[i] != ',') continue;
       const auto raw = l.substr(from, i - from);
-      const auto f = strip_blanks(raw);
+      const auto f = strip(raw);
       const int column = static_cast<int>(from + (f.empty() ? 0 : static_cast<size_t>(f.data() - raw.data()))) + 1;
       if (n > 0 && n <= count)
         fields.push_back({f, column});
@@ -177,14 +166,14 @@ BdfEntries::Ends BdfEntries::cut(const Line& line, std::vector<DataField>& field
     while (n++ <= count) fields.push_back({"", 1});
     return ends;
   }
-  ends.first = strip_blanks(l.substr(0, 8));
+  ends.first = strip(l.substr(0, 8));
   const bool large = !ends.first.empty() && (ends.first.back() == '*' || ends.first.front() == '*');
   const size_t width = large ? 16 : 8, count = large ? 4 : 8;
   for (size_t i = 0; i < count; ++i) {
     const size_t from = 8 + i * width;
-    fields.push_back({from < l.size() ? strip_blanks(l.substr(from, width)) : std::string_view{}, static_cast<int>(from) + 1});
+    fields.push_back({from < l.size() ? strip(l.substr(from, width)) : std::string_view{}, static_cast<int>(from) + 1});
   }
-  if (l.size() > 72) ends.label = strip_blanks(l.substr(72, 8));
+  if (l.size() > 72) ends.label = strip(l.substr(72, 8));
   return ends;
 }
 
@@ -199,7 +188,7 @@ bool BdfEntries::bulk_line(Line& l) {
       comment(l.text);
       continue;
     }
-    const auto text = strip_blanks(l.text.substr(0, l.text.find('$')));
+    const auto text = strip(l.text.substr(0, l.text.find('$')));
     if (text.empty()) continue;
     if (starts(text, "BEGINBULK") || starts(text, "BEGINSUPER")) {
       if (in_bulk_ || upper(text).size() > 9)
@@ -218,7 +207,7 @@ void BdfEntries::end_data(const Line& l) {
   if (stack_.size() > 1) {
     stack_.pop_back();
     for (Line more; physical(more);) {
-      const auto text = strip_blanks(more.text.substr(0, more.text.find('$')));
+      const auto text = strip(more.text.substr(0, more.text.find('$')));
       if (text.empty()) continue;
       if (starts(text, "ENDDATA")) break;
       throw Error(l.place(), fmt::format("ENDDATA ends an included file, but entries follow at {}", more.place()),
@@ -235,18 +224,18 @@ bool BdfEntries::next(BdfEntry& e) {
     end_data(l);
     return false;
   }
-  e.data = {&l.source->path, l.number, {}};
-  Ends ends = cut(l, e.data.fields);
+  static_cast<DataLine&>(e) = {&l.source->path, l.number, {}};
+  Ends ends = cut(l, e.fields);
   e.name = upper(ends.first);
   if (e.name.empty() || e.name.front() == '+' || e.name.front() == '*')
     throw Error(l.place(), "a continuation that follows no entry", "sort the continuations after their entries");
   bool large = e.name.back() == '*', half = large;
   if (large) e.name.pop_back();
   while (bulk_line(l)) {
-    const auto mark = e.data.fields.size();
-    const Ends more = cut(l, e.data.fields);
+    const auto mark = e.fields.size();
+    const Ends more = cut(l, e.fields);
     if (!more.first.empty() && more.first.front() != '+' && more.first.front() != '*') {
-      e.data.fields.resize(mark);
+      e.fields.resize(mark);
       ahead_ = l, ahead_given_ = true;
       break;
     }
@@ -259,7 +248,7 @@ bool BdfEntries::next(BdfEntry& e) {
     half = large && !half;
     ends = more;
   }
-  while (!e.data.fields.empty() && e.data.fields.back().text.empty()) e.data.fields.pop_back();
+  while (!e.fields.empty() && e.fields.back().text.empty()) e.fields.pop_back();
   return true;
 }
 

@@ -12,9 +12,8 @@
 namespace hilo {
 
 /// A bulk entry: its name, and its fields from the second on.
-struct BdfEntry {
+struct BdfEntry : DataLine {
   std::string name;
-  DataLine data;
 };
 
 /// A line of executive or case control.

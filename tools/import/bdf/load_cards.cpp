@@ -10,87 +10,83 @@
 namespace hilo {
 namespace {
 
-void read_spc1(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_spc1(const BdfEntry& d, BdfDeck& deck, Imported&) {
   BdfSupport s{{}, components(d, 1), 0, d.place()};
   if (const size_t end = grid_list(d, 2, s.grids, s.ranges); end < d.fields.size())
     throw Error(d.place(end), fmt::format("SPC1: expected a grid, found \"{}\"", d.text(end)));
-  deck.supports[d.integer(0)].push_back(std::move(s));
+  deck.supports.lines[d.integer(0)].push_back(std::move(s));
 }
-void read_spc(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_spc(const BdfEntry& d, BdfDeck& deck, Imported&) {
   for (size_t i = 1; i < 7; i += 3)
-    if (!d.empty(i)) deck.supports[d.integer(0)].push_back({{d.integer(i)}, components(d, i + 1), d.number(i + 2), d.place()});
+    if (!d.empty(i)) deck.supports.lines[d.integer(0)].push_back({{d.integer(i)}, components(d, i + 1), d.number(i + 2), d.place()});
 }
-void read_sum(const BdfEntry& e, std::map<std::int64_t, BdfSupportSum>& sums) {
-  auto& sum = sums[e.data.integer(0)];
-  if (!sum.place.empty()) throw Error(e.data.place(0), fmt::format("{} {} is given twice", e.name, e.data.integer(0)));
-  sum.place = e.data.place();
-  grid_list(e.data, 1, sum.sets);
+void add_sum(const BdfEntry& d, std::map<std::int64_t, BdfSum>& sums, BdfSum sum) {
+  if (!sums.try_emplace(d.integer(0), std::move(sum)).second)
+    throw Error(d.place(0), fmt::format("{} {} is given twice", d.name, d.integer(0)));
 }
-void read_spcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.support_sums); }
-void read_mpcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.tie_sums); }
-void read_bgadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.glue_sums); }
-void read_bctadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.contact_sums); }
-void read_mpc(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+template <auto sets>
+void read_sum(const BdfEntry& d, BdfDeck& deck, Imported&) {
+  BdfSum sum{1, {}, d.place()};
+  std::vector<std::int64_t> ids;
+  grid_list(d, 1, ids);
+  for (const auto id : ids) sum.parts.emplace_back(1, id);
+  add_sum(d, (deck.*sets).sums, sum);
+}
+void read_mpc(const BdfEntry& d, BdfDeck& deck, Imported&) {
   BdfEquation m{{}, d.place()};
   for (size_t line = 0; 8 * line < d.fields.size(); ++line)  // two terms a line, behind an empty field
     for (const size_t i : {8 * line + 1, 8 * line + 4})
-      if (i < d.fields.size() && !d.empty(i)) m.terms.push_back({d.integer(i), d.empty(i + 1) ? 0 : d.integer(i + 1), d.number(i + 2)});
-  deck.ties[d.integer(0)].push_back(m);
+      if (i < d.fields.size() && !d.empty(i)) m.terms.push_back({d.integer(i), d.integer(i + 1, 0), d.number(i + 2)});
+  deck.ties.lines[d.integer(0)].push_back(m);
 }
 
 Vec3 vector_at(const DataLine& d, size_t field) { return {d.number(field), d.number(field + 1), d.number(field + 2)}; }
 /// The same where a load has no direction without it.
 Vec3 direction_at(const BdfEntry& e, size_t field) {
-  const Vec3 v = vector_at(e.data, field);
-  if (!(v.norm() > 0)) throw Error(e.data.place(field), e.name + ": the direction has no length");
+  const Vec3 v = vector_at(e, field);
+  if (!(v.norm() > 0)) throw Error(e.place(field), e.name + ": the direction has no length");
   return v;
 }
 
-void read_force(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
-  BdfLoad l{e.name.front() == 'F' ? BdfLoad::Kind::force : BdfLoad::Kind::moment};
-  l.grid = d.integer(1), l.place = d.place();
-  if (e.name.back() == '1') {
+/// Behind the others of its set.
+BdfLoad& new_load(const BdfEntry& d, BdfDeck& deck, BdfLoad::Kind kind) {
+  BdfLoad& l = deck.loads.lines[d.integer(0)].emplace_back(BdfLoad{kind});
+  l.place = d.place();
+  return l;
+}
+
+void read_force(const BdfEntry& d, BdfDeck& deck, Imported&) {
+  BdfLoad& l = new_load(d, deck, d.name.front() == 'F' ? BdfLoad::Kind::force : BdfLoad::Kind::moment);
+  l.grid = d.integer(1);
+  if (d.name.back() == '1') {
     l.size = d.number(2), l.towards = {d.integer(3), d.integer(4)};
   } else {
-    l.system = d.empty(2) ? 0 : d.integer(2);
-    l.size = d.number(3), l.direction = direction_at(e, 4);
+    l.system = d.integer(2, 0);
+    l.size = d.number(3), l.direction = direction_at(d, 4);
   }
-  deck.loads[d.integer(0)].push_back(l);
 }
-void read_spcd(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_spcd(const BdfEntry& d, BdfDeck& deck, Imported&) {
   for (size_t i = 1; i < 7; i += 3)
     if (!d.empty(i)) {
-      BdfLoad l{BdfLoad::Kind::displacement};
-      l.grid = d.integer(i), l.components = components(d, i + 1), l.size = d.number(i + 2), l.place = d.place();
-      deck.loads[d.integer(0)].push_back(l);
+      BdfLoad& l = new_load(d, deck, BdfLoad::Kind::displacement);
+      l.grid = d.integer(i), l.components = components(d, i + 1), l.size = d.number(i + 2);
     }
 }
-void read_gravity(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
-  BdfLoad l{BdfLoad::Kind::gravity};
-  l.system = d.empty(1) ? 0 : d.integer(1), l.place = d.place();
-  l.size = d.number(2), l.direction = direction_at(e, 3);
-  deck.loads[d.integer(0)].push_back(l);
+void read_gravity(const BdfEntry& d, BdfDeck& deck, Imported&) {
+  BdfLoad& l = new_load(d, deck, BdfLoad::Kind::gravity);
+  l.system = d.integer(1, 0), l.size = d.number(2), l.direction = direction_at(d, 3);
 }
 
 /// SID G CID A R1 R2 R3 METHOD RACC: the whole turns about an axis through a grid.
-void read_rforce(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_rforce(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (d.number(8) != 0) in.skip("RFORCE: angular acceleration", d.place(8));
-  BdfLoad l{BdfLoad::Kind::rotation};
-  l.grid = d.empty(1) ? 0 : d.integer(1), l.system = d.empty(2) ? 0 : d.integer(2), l.place = d.place();
-  l.size = d.number(3), l.direction = direction_at(e, 4);
-  deck.loads[d.integer(0)].push_back(l);
+  BdfLoad& l = new_load(d, deck, BdfLoad::Kind::rotation);
+  l.grid = d.integer(1, 0), l.system = d.integer(2, 0);
+  l.size = d.number(3), l.direction = direction_at(d, 4);
 }
 
 /// Pressure on a face of a solid, or on a shell: SID EID P1 P2 P3 P4 G1 G3|G4, or SID EID P1 - - - THRU EID2; then CID N1 N2 N3 SORL LDIR.
-void read_pload4(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_pload4(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   BdfLoad l{BdfLoad::Kind::pressure};
   l.place = d.place(), l.size = d.number(2), l.elements = {d.integer(1)};
   for (size_t i = 2; i < 6; ++i) l.at_corners.push_back(d.number(i, l.size));
@@ -101,54 +97,47 @@ void read_pload4(const BdfEntry& e, BdfDeck& deck, Imported& in) {
       throw Error(d.place(7), fmt::format("PLOAD4: {} THRU {} names no usable range", l.elements[0], last));
     l.ranges = {{l.elements[0], last, 1}}, l.elements.clear();
   } else {
-    l.face = {d.empty(6) ? 0 : d.integer(6), d.empty(7) ? 0 : d.integer(7)};
+    l.face = {d.integer(6, 0), d.integer(7, 0)};
   }
-  l.system = d.empty(8) ? 0 : d.integer(8);
+  l.system = d.integer(8, 0);
   l.direction = vector_at(d, 9);
   for (size_t i = 12; i < 14; ++i)
     if (!d.empty(i) && upper(d.text(i)) != (i == 12 ? "SURF" : "NORM"))
       return in.skip(fmt::format("PLOAD4, {}", upper(d.text(i)).substr(0, 8)), d.place(i));
-  deck.loads[d.integer(0)].push_back(std::move(l));
+  deck.loads.lines[d.integer(0)].push_back(std::move(l));
 }
 /// SID P and three or four grids, positive along the normal that they turn about.
-void read_pload(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
-  BdfLoad l{BdfLoad::Kind::pressure};
-  l.place = d.place(), l.size = d.number(1);
+void read_pload(const BdfEntry& d, BdfDeck& deck, Imported&) {
+  BdfLoad& l = new_load(d, deck, BdfLoad::Kind::pressure);
+  l.size = d.number(1);
   for (size_t i = 2; i < 6; ++i)
     if (!d.empty(i)) l.corners.push_back(d.integer(i));
   if (l.corners.size() < 3) throw Error(d.place(), "PLOAD names three or four grids");
-  deck.loads[d.integer(0)].push_back(std::move(l));
 }
 /// SID P and shells.
-void read_pload2(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
-  BdfLoad l{BdfLoad::Kind::pressure};
-  l.place = d.place(), l.size = d.number(1);
+void read_pload2(const BdfEntry& d, BdfDeck& deck, Imported&) {
+  BdfLoad& l = new_load(d, deck, BdfLoad::Kind::pressure);
+  l.size = d.number(1);
   grid_list(d, 2, l.elements, l.ranges);
-  deck.loads[d.integer(0)].push_back(std::move(l));
 }
 
-void read_load(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_load(const BdfEntry& d, BdfDeck& deck, Imported&) {
   BdfSum sum{d.number(1, 1), {}, d.place()};
   for (size_t i = 2; i < d.fields.size(); i += 2)
     if (!d.empty(i + 1)) sum.parts.emplace_back(d.number(i, 1), d.integer(i + 1));
-  if (!deck.load_sums.try_emplace(d.integer(0), sum).second) throw Error(d.place(0), fmt::format("LOAD {} is given twice", d.integer(0)));
+  add_sum(d, deck.loads.sums, sum);
 }
 
 /// EIGRL: SID V1 V2 ND; EIGR: SID METHOD F1 F2 NE ND.  A band of frequencies is not asked for.
-void read_modes(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
-  const size_t field = e.name == "EIGRL" ? 3 : 5, band = e.name == "EIGRL" ? 2 : 3;
-  e.data.ignore_rest();  // how they are found and scaled
-  const auto n = d.empty(field) ? 0 : d.integer(field);
-  if (n == 0 && !d.empty(band)) in.skip(e.name + " up to a frequency", d.place(band));
+void read_modes(const BdfEntry& d, BdfDeck& deck, Imported& in) {
+  const size_t field = d.name == "EIGRL" ? 3 : 5, band = d.name == "EIGRL" ? 2 : 3;
+  d.ignore_rest();  // how they are found and scaled
+  const auto n = d.integer(field, 0);
+  if (n == 0 && !d.empty(band)) in.skip(d.name + " up to a frequency", d.place(band));
   deck.modes[d.integer(0)] = static_cast<int>(std::min<std::int64_t>(std::max<std::int64_t>(n, 0), 1000));
 }
 /// SID N1 DT1 NO1, and on further lines other steps.
-void read_tstep(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_tstep(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   double end = 0;
   for (size_t i = 1; i < d.fields.size(); i += 8) end += d.number(i) * d.number(i + 1);
   if (d.fields.size() > 8) in.skip("TSTEP whose steps change", d.place());
@@ -156,8 +145,7 @@ void read_tstep(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 }
 
 /// A force per length of a beam or of a part of it; a force or moment at a point of it.
-void read_pload1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_pload1(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   const std::string type = upper(d.text(2)), scale = upper(d.text(3));
   const bool known_scale = scale == "LE" || scale == "FR" || scale == "LEPR" || scale == "FRPR";
   if (type.size() < 2 || (type[0] != 'F' && type[0] != 'M') || type[1] < 'X' || type[1] > 'Z' || (type.size() > 2 && type.substr(2) != "E"))
@@ -171,20 +159,36 @@ void read_pload1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   l.elements = {d.integer(1)}, l.size = d.number(5), l.size_end = from == to ? l.size : d.number(7), l.place = d.place(),
   l.direction = Vec3::Unit(type[1] - 'X');
   l.own_axes = type.size() > 2, l.projected = scale.size() > 2, l.as_share = scale.starts_with("FR"), l.from_to = {from, to};
-  deck.loads[d.integer(0)].push_back(l);
+  deck.loads.lines[d.integer(0)].push_back(l);
 }
 
 }  // namespace
 
-std::span<const BdfCard> bdf_load_cards() {
-  static constexpr BdfCard cards[] = {
-      {"SPC1", read_spc1},     {"SPC", read_spc},       {"SPCD", read_spcd},     {"SPCADD", read_spcadd}, {"FORCE", read_force},
-      {"FORCE1", read_force},  {"MOMENT", read_force},  {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"RFORCE", read_rforce},
-      {"PLOAD1", read_pload1}, {"PLOAD4", read_pload4}, {"PLOAD", read_pload},   {"PLOAD2", read_pload2}, {"LOAD", read_load},
-      {"EIGRL", read_modes},   {"EIGR", read_modes},    {"TSTEP", read_tstep},   {"MPC", read_mpc},       {"MPCADD", read_mpcadd},
-      {"BGADD", read_bgadd},   {"BCTADD", read_bctadd},
+std::vector<BdfCard> bdf_load_cards() {
+  return {
+      {"SPC1", read_spc1},
+      {"SPC", read_spc},
+      {"SPCD", read_spcd},
+      {"SPCADD", read_sum<&BdfDeck::supports>},
+      {"FORCE", read_force},
+      {"FORCE1", read_force},
+      {"MOMENT", read_force},
+      {"MOMENT1", read_force},
+      {"GRAV", read_gravity},
+      {"RFORCE", read_rforce},
+      {"PLOAD1", read_pload1},
+      {"PLOAD4", read_pload4},
+      {"PLOAD", read_pload},
+      {"PLOAD2", read_pload2},
+      {"LOAD", read_load},
+      {"EIGRL", read_modes},
+      {"EIGR", read_modes},
+      {"TSTEP", read_tstep},
+      {"MPC", read_mpc},
+      {"MPCADD", read_sum<&BdfDeck::ties>},
+      {"BGADD", read_sum<&BdfDeck::glue>},
+      {"BCTADD", read_sum<&BdfDeck::contacts>},
   };
-  return cards;
 }
 
 }  // namespace hilo

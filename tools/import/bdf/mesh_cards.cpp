@@ -21,8 +21,7 @@ std::string held_in(const DataLine& d, size_t field) {
   return std::string(d.text(field));
 }
 
-void read_grid(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_grid(const BdfEntry& d, BdfDeck& deck, Imported&) {
   const auto id = d.integer(0);
   if (id < 1) throw Error(d.place(0), fmt::format("GRID {} is not positive", id));
   if (!deck.row.try_emplace(id, static_cast<std::int64_t>(deck.X.size())).second)
@@ -33,8 +32,7 @@ void read_grid(const BdfEntry& e, BdfDeck& deck, Imported&) {
   deck.grids.back() = {system_in(d, 1), system_in(d, 5), held_in(d, 6), d.place(0)};
 }
 
-void read_grid_default(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_grid_default(const BdfEntry& d, BdfDeck& deck, Imported&) {
   if (!deck.grid_default.place.empty()) throw Error(d.place(), "GRDSET is given twice", "give it once");
   deck.grid_default = {system_in(d, 1), system_in(d, 5), held_in(d, 6), d.place()};
 }
@@ -49,11 +47,10 @@ void add_system(BdfDeck& deck, std::int64_t id, const BdfSystem& s) {
     throw Error(s.place, fmt::format("coordinate system {} is given twice", id), "number each system once");
 }
 /// Three grids; two systems on a line.
-void read_cord1(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_cord1(const BdfEntry& d, BdfDeck& deck, Imported&) {
   for (size_t from = 0; from < std::max<size_t>(d.fields.size(), 1); from += 4) {
     if (from > 0 && d.empty(from)) continue;
-    BdfSystem s{kind_of(e), d.place(from)};
+    BdfSystem s{kind_of(d), d.place(from)};
     for (size_t i = 0; i < 3; ++i)
       if (s.grids[i] = d.integer(from + 1 + i); s.grids[i] < 1)
         throw Error(d.place(from + 1 + i), fmt::format("GRID {} is not positive", s.grids[i]));
@@ -61,10 +58,9 @@ void read_cord1(const BdfEntry& e, BdfDeck& deck, Imported&) {
   }
 }
 /// Three points in another system.
-void read_cord2(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
-  BdfSystem s{kind_of(e), d.place(0)};
-  s.reference = d.empty(1) ? 0 : d.integer(1);
+void read_cord2(const BdfEntry& d, BdfDeck& deck, Imported&) {
+  BdfSystem s{kind_of(d), d.place(0)};
+  s.reference = d.integer(1, 0);
   for (size_t i = 0; i < 9; ++i) s.points[i / 3][static_cast<Eigen::Index>(i % 3)] = d.number(2 + i);
   add_system(deck, d.integer(0), s);
 }
@@ -75,7 +71,7 @@ void add(BdfDeck& deck, BdfDeck::Cell c) {
   deck.cells.push_back(std::move(c));
 }
 /// A property that is left blank has the number of the element.
-std::int64_t property_in(const DataLine& d, size_t field) { return d.empty(field) ? d.integer(0) : d.integer(field); }
+std::int64_t property_in(const DataLine& d, size_t field) { return d.integer(field, d.integer(0)); }
 
 struct SolidKind {
   const char* name;
@@ -89,9 +85,8 @@ const std::vector<SolidKind> solids = {
     {"CHEXA", 8, 20, Shape::hex8, Shape::hex20r, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15}},
 };
 
-void read_solid(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const SolidKind& k = *std::find_if(solids.begin(), solids.end(), [&](const SolidKind& s) { return e.name == s.name; });
-  const auto& d = e.data;
+void read_solid(const BdfEntry& d, BdfDeck& deck, Imported&) {
+  const SolidKind& k = *std::find_if(solids.begin(), solids.end(), [&](const SolidKind& s) { return d.name == s.name; });
   const size_t given = d.fields.size() < 2 ? 0 : d.fields.size() - 2;
   BdfDeck::Cell r{k.linear, d.integer(0), property_in(d, 1), {}, d.place(0)};
   size_t filled = 0;
@@ -115,18 +110,16 @@ void read_solid(const BdfEntry& e, BdfDeck& deck, Imported&) {
 
 /// What a rod carries besides its area: a constant of torsion and a mass per length.
 void rod_extras(const BdfEntry& e, size_t J, size_t nsm, Imported& in) {
-  if (e.data.number(J) != 0) in.skip(e.name + ": torsional constant J", e.data.place(J));
-  if (e.data.number(nsm) != 0) in.skip(e.name + ": mass per length NSM", e.data.place(nsm));
+  if (e.number(J) != 0) in.skip(e.name + ": torsional constant J", e.place(J));
+  if (e.number(nsm) != 0) in.skip(e.name + ": mass per length NSM", e.place(nsm));
 }
 
-void read_rod(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_rod(const BdfEntry& d, BdfDeck& deck, Imported&) {
   add(deck, {Shape::bar2, d.integer(0), property_in(d, 1), {d.integer(2), d.integer(3)}, d.place(0)});
 }
 /// Carries its material and its area itself: each pair of them is a property with a number below zero.
-void read_conrod(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
-  rod_extras(e, 5, 7, in);
+void read_conrod(const BdfEntry& d, BdfDeck& deck, Imported& in) {
+  rod_extras(d, 5, 7, in);
   const auto material = d.integer(3);
   const double area = d.number(4);
   std::int64_t property = -1;
@@ -139,13 +132,12 @@ void read_conrod(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   add(deck, {Shape::bar2, d.integer(0), property, {d.integer(1), d.integer(2)}, d.place(0)});
 }
 
-void read_property(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
-  if (e.name == "PSOLID") {
+void read_property(const BdfEntry& d, BdfDeck& deck, Imported& in) {
+  if (d.name == "PSOLID") {
     if (!d.empty(2) && d.text(2) != "0") in.skip("PSOLID: axes of its material CORDM", d.place(2));
     d.ignore_rest();  // how it is integrated there, and where stresses are asked for
   }
-  if (e.name == "PSOLID" && !d.empty(6) && upper(d.text(6)) != "SMECH")
+  if (d.name == "PSOLID" && !d.empty(6) && upper(d.text(6)) != "SMECH")
     throw Error(d.place(6), fmt::format("PSOLID {}: cells of {} are no solids", d.integer(0), d.text(6)), "remove them");
   if (!deck.material_of.try_emplace(d.integer(0), d.integer(1)).second)
     throw Error(d.place(0), fmt::format("property {} is given twice", d.integer(0)), "number each property once");
@@ -153,13 +145,12 @@ void read_property(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 void read_rod_property(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   read_property(e, deck, in);
   rod_extras(e, 3, 5, in);
-  if (!e.data.empty(2)) deck.area_of[e.data.integer(0)] = e.data.number(2);
+  if (!e.empty(2)) deck.area_of[e.integer(0)] = e.number(2);
 }
 
 /// PID MID OD T NSM OD2: a pipe; T 0 or blank is a full rod.
-void read_pipe(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
-  read_property(e, deck, in);
+void read_pipe(const BdfEntry& d, BdfDeck& deck, Imported& in) {
+  read_property(d, deck, in);
   const double at_a = d.number(2), at_b = d.number(5, at_a), t = d.number(3);
   if (!(at_a > 0 && at_b > 0 && t >= 0 && 2 * t <= std::min(at_a, at_b)))
     throw Error(d.place(2),
@@ -171,8 +162,7 @@ void read_pipe(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (d.number(4) != 0) in.skip("PTUBE: mass per length NSM", d.place(4));
 }
 
-void read_param(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_param(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (upper(d.text(0)) != "WTMASS") return in.skip("PARAM " + upper(d.text(0)).substr(0, 40), d.place());
   deck.mass_factor = d.number(1);
   if (!(deck.mass_factor > 0)) throw Error(d.place(1), fmt::format("PARAM WTMASS: {:g} is not positive", deck.mass_factor));
@@ -180,15 +170,14 @@ void read_param(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 }
 
 [[noreturn]] void refuse_card(const BdfEntry& e, const char* why) {
-  throw Error(e.data.place() + ":1", fmt::format("{}: {}", e.name, why), bdf_supported);
+  throw Error(e.place() + ":1", fmt::format("{}: {}", e.name, why), bdf_supported);
 }
 /// EID PID G1 to G5, the base first: two tetrahedra.
-void read_pyramid(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_pyramid(const BdfEntry& d, BdfDeck& deck, Imported&) {
   std::vector<std::int64_t> n;
   for (size_t i = 2; i < 7; ++i) n.push_back(d.integer(i));
   for (size_t i = 7; i < d.fields.size(); ++i)
-    if (!d.empty(i)) refuse_card(e, "pyramids of mid-side nodes are not read");
+    if (!d.empty(i)) refuse_card(d, "pyramids of mid-side nodes are not read");
   std::int64_t id = d.integer(0);
   for (const auto& half : halves_of_pyramid(n)) {
     add(deck, {Shape::tet4, id, property_in(d, 1), half, d.place(0)});
@@ -200,8 +189,8 @@ void axisymmetric(const BdfEntry& e, BdfDeck&, Imported&) { refuse_card(e, "axis
 
 }  // namespace
 
-std::span<const BdfCard> bdf_mesh_cards() {
-  static constexpr BdfCard cards[] = {
+std::vector<BdfCard> bdf_mesh_cards() {
+  return {
       {"GRID", read_grid},      {"GRDSET", read_grid_default}, {"CORD1R", read_cord1},      {"CORD1C", read_cord1},
       {"CORD1S", read_cord1},   {"CORD2R", read_cord2},        {"CORD2C", read_cord2},      {"CORD2S", read_cord2},
       {"CTETRA", read_solid},   {"CPENTA", read_solid},        {"CHEXA", read_solid},       {"CROD", read_rod},
@@ -209,7 +198,6 @@ std::span<const BdfCard> bdf_mesh_cards() {
       {"CTUBE", read_rod},      {"PTUBE", read_pipe},          {"CPYRAM", read_pyramid},    {"CTRAX3", axisymmetric},
       {"CTRAX6", axisymmetric},
   };
-  return cards;
 }
 
 }  // namespace hilo

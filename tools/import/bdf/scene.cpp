@@ -17,6 +17,7 @@ BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const Imp
   for (const auto a : in.mesh.nodes) used_[static_cast<size_t>(a)] = 1;
   for (const auto& name : in.mesh.all_names())
     if (!in.cases.empty()) scene_.take("set", name), scene_.take("facets", name);  // of the subcases before
+  for (const auto& s : deck.shells) shell_.try_emplace(s.id, &s);
   Eigen::AlignedBox3d box;
   for (const auto a : in.mesh.nodes) box.extend(X(a));
   for (const auto& b : deck.beams)
@@ -32,7 +33,7 @@ SceneWriter BdfScene::write() {
   find_masses();
   find_bodies();
   gravity();
-  rotation();
+  each(BdfLoad::Kind::rotation, &BdfScene::rotation);
   materials();
   bodies();
   beams();
@@ -40,10 +41,10 @@ SceneWriter BdfScene::write() {
   rigid();
   springs();
   supports();
-  varying_pressures();
+  each(BdfLoad::Kind::pressure, &BdfScene::varying_pressure);
   nodal_loads();
   pressures();
-  line_loads();
+  each(BdfLoad::Kind::line, &BdfScene::line_load);
   pairs();
   time();
   scene_.begin(deck_.chosen.title, gravity_);
@@ -87,18 +88,16 @@ void BdfScene::materials() {
   std::map<std::int64_t, std::int64_t> property_of;  // region -> its first property
   for (size_t c = 0; c < deck_.cells.size(); ++c) property_of.try_emplace(m.region[c], deck_.cells[c].property);
   if (in_.sheets) {  // shells that become solids
-    std::unordered_map<std::int64_t, std::int64_t> of_shell;
-    for (const auto& s : deck_.shells) of_shell.try_emplace(s.id, s.property);
     for (size_t c = deck_.cells.size(); c < m.cell_id.size(); ++c)
-      if (const auto s = of_shell.find(m.cell_id[c]); s != of_shell.end()) property_of.try_emplace(m.region[c], s->second);
+      if (const auto s = shell_.find(m.cell_id[c]); s != shell_.end()) property_of.try_emplace(m.region[c], s->second->property);
   }
   std::set<std::int64_t> used;
   SceneWriter regions;
   for (const auto& [r, property] : property_of) {
     const std::string& name = m.region_name[static_cast<size_t>(r)];
-    const auto mid = deck_.material_of.find(property);
-    const auto mat = mid == deck_.material_of.end() ? deck_.materials.end() : deck_.materials.find(mid->second);
-    if (mat == deck_.materials.end()) {
+    const auto* mat = deck_.material(property);
+    if (!mat) {
+      const auto mid = deck_.material_of.find(property);
       in_.notes.push_back(mid == deck_.material_of.end()
                               ? fmt::format("region {}: no property {}, so no material", toml_text(name), property)
                               : fmt::format("region {}: no material {}", toml_text(name), mid->second));
@@ -159,23 +158,14 @@ void BdfScene::turned_material(std::int64_t property, const DeckMaterial& m, Sce
 
 /// What the supports of the subcase hold.
 void BdfScene::hold() {
-  std::vector<std::int64_t> sets;
   const BdfCase& chosen = deck_.chosen;
-  const auto is_there = [&](std::int64_t id) { return deck_.supports.contains(id) || deck_.support_sums.contains(id); };
-  if (chosen.spc >= 0 && !is_there(chosen.spc)) in_.skip(fmt::format("SPC = {}, of which there is none", chosen.spc), "case control");
-  std::int64_t take = chosen.spc;
-  if (take < 0 && chosen.load < 0 && !chosen.any) {  // no case control: one set is meant
-    if (deck_.support_sums.size() == 1)
-      take = deck_.support_sums.begin()->first;
-    else if (deck_.supports.size() == 1)
-      take = deck_.supports.begin()->first;
-  }
-  if (const auto sum = deck_.support_sums.find(take); sum != deck_.support_sums.end())
-    sets = sum->second.sets;
-  else if (take >= 0)
-    sets = {take};
-  for (const auto& [id, lines] : deck_.supports)
-    if (std::find(sets.begin(), sets.end(), id) == sets.end())
+  const auto& all = deck_.supports;
+  if (chosen.spc >= 0 && !all.has(chosen.spc)) in_.skip(fmt::format("SPC = {}, of which there is none", chosen.spc), "case control");
+  const auto take = chosen.spc < 0 && chosen.load < 0 && !chosen.any ? all.only() : chosen.spc;
+  const BdfSum* sum = all.sum(take);
+  const BdfSum taken = sum ? *sum : BdfSum{1, {{1, take}}, ""};
+  for (const auto& [id, lines] : all.lines)
+    if (std::ranges::find(taken.parts, std::pair(1., id)) == taken.parts.end())
       in_.skip("SPC of a set that the first subcase does not use", lines.front().place, static_cast<std::int64_t>(lines.size()));
 
   for (size_t a = 0; a < deck_.grids.size(); ++a)
@@ -185,25 +175,19 @@ void BdfScene::hold() {
       for (const char c : always)
         if (c >= '1' && c <= '6') h.bits |= 1u << (c - '1');
     }
-  for (const auto id : sets) {
-    const auto lines = deck_.supports.find(id);
-    if (lines == deck_.supports.end()) {
-      if (const auto sum = deck_.support_sums.find(take); sum != deck_.support_sums.end())
-        in_.skip(fmt::format("SPCADD of set {}, of which there is none", id), sum->second.place);
+  for (const auto& [factor, id] : taken.parts) {
+    const auto lines = all.lines.find(id);
+    if (lines == all.lines.end()) {
+      if (sum) in_.skip(fmt::format("SPCADD of set {}, of which there is none", id), sum->place);
       continue;
     }
     for (const BdfSupport& s : lines->second)
       for (const auto grid : s.grids) {
         const auto a = deck_.row.find(grid);
-        if (a == deck_.row.end()) {
+        if (a == deck_.row.end())
           in_.skip("SPC on a grid that is not there", s.place);
-          continue;
-        }
-        Held& h = held_[a->second];
-        if (h.place.empty()) h.place = s.place;
-        h.bits |= s.components;
-        for (size_t k = 0; k < 6; ++k)
-          if (s.components >> k & 1) h.value[k] = s.value;
+        else
+          held_[a->second].hold(s.components, s.value, s.place);
       }
   }
   for (const auto& [factor, l] : loads_) {
@@ -213,8 +197,7 @@ void BdfScene::hold() {
       in_.skip("SPCD of a component that no SPC holds", l->place);
       continue;
     }
-    for (size_t k = 0; k < 6; ++k)
-      if (l->components >> k & 1) h->second.value[k] = factor * l->size;
+    h->second.hold(l->components, factor * l->size, l->place);
   }
 }
 

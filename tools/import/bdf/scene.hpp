@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "import/bdf/card.hpp"
@@ -49,7 +50,6 @@ class BdfScene {
   void beam(const BdfDeck::Thin& b);
   std::vector<double> sections_of(const BdfDeck::Thin& b, double length) const;
   bool nothing_twists(std::int64_t property) const;
-  std::string section_name(std::int64_t property) const;
   // scene_pairs.cpp
   std::string pair_surface(std::int64_t region);
   void pairs();
@@ -65,13 +65,18 @@ class BdfScene {
   // scene_loads.cpp
   void choose_loads();
   void gravity();
-  void rotation();
+  void rotation(double factor, const BdfLoad& l);
   void rotation_of_bodies();
-  void varying_pressures();
+  void varying_pressure(double factor, const BdfLoad& l);
+  template <class Use>
+  void each(BdfLoad::Kind kind, const Use& use) {
+    for (const auto& [factor, l] : loads_)
+      if (l->kind == kind) (this->*use)(factor, *l);
+  }
   void nodal_loads();
   void distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const std::string& place);
   void pressures();
-  void line_loads();
+  void line_load(double factor, const BdfLoad& l);
   Facet face_of_solid(const BdfLoad& l, std::int64_t element) const;
 
   double si(const char* unit) const { return options_.si(unit); }
@@ -117,17 +122,21 @@ class BdfScene {
   struct Held {
     unsigned bits = 0;
     std::array<double, 6> value{};
-    std::string place;
+    std::string place;  // of the first
+    void hold(unsigned components, double at, const std::string& where) {
+      if (place.empty()) place = where;
+      bits |= components;
+      for (size_t k = 0; k < 6; ++k)
+        if (components >> k & 1) value[k] = at;
+    }
   };
   std::map<std::int64_t, Held> held_;  // by row: components that a grid is held in, and at which values
   std::set<std::int64_t> of_solids_;   // rows, beside shells that become pairs
   /// The sheets that a grid of shells is in, where these become pairs of nodes.
-  const std::vector<Sheets::Part>& sheets(std::int64_t row) const {
-    static const std::vector<Sheets::Part> none;
-    return in_.sheets ? in_.sheets->at(row) : none;
-  }
+  const std::vector<Sheets::Part>& sheets(std::int64_t row) const { return sheets_at(in_, row); }
   bool is_of_shell(std::int64_t row) const { return !sheets(row).empty(); }
-  std::map<std::int64_t, std::string> on_beam_;  // row of a grid of beams -> place
+  std::unordered_map<std::int64_t, const BdfDeck::Thin*> shell_;  // by number
+  std::map<std::int64_t, std::string> on_beam_;                   // row of a grid of beams -> place
   struct MadeBeam {
     std::string name;
     Mat3 axes;                        // x along, y in plane 1
@@ -148,8 +157,16 @@ class BdfScene {
   std::map<std::int64_t, MadeBeam> made_beams_;                  // by element
   std::map<std::int64_t, std::array<DeckSection, 2>> sections_;  // of beams, by property
   std::vector<std::pair<double, const BdfLoad*>> loads_;
-  std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
-  std::map<std::int64_t, std::string> glue_name_;                        // region -> set
+  struct Sum {
+    Vec3 value = Vec3::Zero();
+    std::string place;  // of the first
+    void add(const Vec3& more, const std::string& where) {
+      value += more;
+      if (place.empty()) place = where;
+    }
+  };
+  std::map<std::int64_t, Sum> force_, moment_;     // by row
+  std::map<std::int64_t, std::string> glue_name_;  // region -> set
   std::map<Rows, std::string> set_by_rows_;
   SceneWriter scene_;
   SceneValue gravity_;

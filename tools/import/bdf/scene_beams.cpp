@@ -23,9 +23,8 @@ void BdfScene::beams() {
   for (const auto& b : deck_.beams) {
     if (properties.insert(b.property).second) {
       const BdfThin& p = section_of_beam(deck_, b);
-      const auto mid = deck_.material_of.find(b.property);
-      const auto mat = mid == deck_.material_of.end() ? deck_.materials.end() : deck_.materials.find(mid->second);
-      if (mat == deck_.materials.end()) throw Error(p.place, fmt::format("property {} of beams has no material", b.property), "MAT1");
+      const auto* mat = deck_.material(b.property);
+      if (!mat) throw Error(p.place, fmt::format("property {} of beams has no material", b.property), "MAT1");
       const DeckMaterial& m = mat->second;
       if (m.kind != "stvk" || !m.no_law.empty()) in_.skip("MATS1 of beams, which are linear elastic", p.place);
       std::array<DeckSection, 2> ends{p.section, p.end.given() ? p.end : p.section};
@@ -44,7 +43,7 @@ void BdfScene::beams() {
       sections_.emplace(b.property, ends);
       if (have_scene_material(ends, m) && materials.insert(mat->first).second) m.write(scene_, options_);
       for (size_t k = 0; k < (p.end.given() ? 2 : 1); ++k)
-        write_section(scene_, section_name(b.property) + (k == 0 ? "" : "_end"), ends[k], ends[1 - k], m, options_, p.place);
+        write_section(scene_, clean_name(deck_.name_of(b.property)) + (k == 0 ? "" : "_end"), ends[k], ends[1 - k], m, options_, p.place);
     }
     beam(b);
   }
@@ -66,11 +65,6 @@ bool BdfScene::nothing_twists(std::int64_t property) const {
       for (auto [it, end] = along.equal_range(grid); it != end && b.property == property; ++it)
         if (it->second.cross(direction(b)).norm() > 1e-6) return false;
   return true;
-}
-
-std::string BdfScene::section_name(std::int64_t property) const {
-  const auto name = deck_.property_name.find(property);
-  return clean_name(name == deck_.property_name.end() ? fmt::format("pid_{}", property) : name->second);
 }
 
 size_t BdfScene::MadeBeam::section(double s) const {
@@ -105,8 +99,8 @@ void BdfScene::beam(const BdfDeck::Thin& b) {
   const BdfBeamPlace at = place_of_beam(deck_, b);
   const double length = (at.b - at.a).norm();
   const std::vector<double> sections = sections_of(b, length);
-  const DeckMaterial& m = deck_.materials.at(deck_.material_of.at(b.property));
-  const std::string name = scene_.unique("beam", fmt::format("{}_{}", b.card, b.id)), section = section_name(b.property);
+  const DeckMaterial& m = deck_.material(b.property)->second;
+  const std::string name = scene_.unique("beam", fmt::format("{}_{}", b.card, b.id)), section = clean_name(deck_.name_of(b.property));
   std::vector<Vec3> points;
   for (const double s : sections) points.push_back(point(s == length ? at.b : Vec3(at.a + s / length * (at.b - at.a))));
   std::array<std::string, 2> grids, ends;  // bodies; an end with a pin has a section of its own

@@ -74,7 +74,7 @@ void BdfScene::find_bodies_of_shells() {
   for (const BdfSpring& s : deck_.springs)
     for (const auto g : s.grids) make(g, s.place, s.name);
   for (const BdfMass& m : masses_) make(m.grid, m.place, "CONM2");
-  for (const auto& [id, list] : deck_.ties)
+  for (const auto& [id, list] : deck_.ties.lines)
     for (const BdfEquation& m : list)
       for (const auto& t : m.terms) make(t.grid, m.place, "MPC");
   for (const auto& [factor, l] : loads_) {
@@ -172,7 +172,7 @@ void BdfScene::bodies() {
     const Vec3 x = arm * options_.scale;
     return x.squaredNorm() * Mat3::Identity() - x * x.transpose();
   };
-  for (const BdfMass& m : masses_) {
+  const auto place_mass = [&](const BdfMass& m) {
     const auto a = row(m.grid, m.place, "CONM2");
     const Mat3 own = axes_at(deck_, std::max<std::int64_t>(m.system, 0), X(a), m.place);
     const Vec3 at = m.system < 0 ? m.offset : Vec3(X(a) + own * m.offset);
@@ -182,31 +182,25 @@ void BdfScene::bodies() {
       Sum& s = sums[a];
       const Vec3 arm = at - X(a);
       s.mass += m.mass, s.first += m.mass * arm, s.inertia += inertia + m.mass * about(arm);
-      continue;
+      return;
     }
     if ((at - X(a)).norm() > 1e-9 * size_) in_.skip("CONM2: offset from a node of solids, which does not turn", m.place);
     if (inertia.norm() > 0) in_.skip("CONM2: inertia at a node of solids, which does not turn", m.place);
-    if (const auto mean = mean_.find(a); mean != mean_.end()) {
-      double most = 0, least = 1e300;
-      for (const auto& [grid, w] : mean->second->of) most = std::max(most, w), least = std::min(least, w);
-      Rows rows;
-      for (const auto& [grid, w] : mean->second->of)
-        if (const auto b = row(grid, m.place, "RBE3"); end(b) == End::node) rows.push_back(b);
-      if (most != least || rows.size() != mean->second->of.size()) {
-        in_.skip("CONM2 on an RBE3 of several weights", m.place);
-        continue;
-      }
-      Vec3 centre = Vec3::Zero();
-      for (const auto b : rows) centre += X(b) / static_cast<double>(rows.size());
-      if ((X(a) - centre).norm() > 1e-6 * size_) {
-        in_.skip("CONM2 on an RBE3 away from the mean of its grids", m.place);
-        continue;
-      }
-      in_.notes.push_back(fmt::format("{}: CONM2 {}: its mass is shared by the {} grids of the RBE3", m.place, m.id, rows.size()));
-      for (const auto b : rows) on_node[b] += m.mass / static_cast<double>(rows.size()), places.try_emplace(b, m.place);
-    } else
-      on_node[a] += m.mass;
-  }
+    const auto mean = mean_.find(a);
+    if (mean == mean_.end()) return void(on_node[a] += m.mass);
+    double most = 0, least = 1e300;
+    for (const auto& [grid, w] : mean->second->of) most = std::max(most, w), least = std::min(least, w);
+    Rows rows;
+    for (const auto& [grid, w] : mean->second->of)
+      if (const auto b = row(grid, m.place, "RBE3"); end(b) == End::node) rows.push_back(b);
+    if (most != least || rows.size() != mean->second->of.size()) return in_.skip("CONM2 on an RBE3 of several weights", m.place);
+    Vec3 centre = Vec3::Zero();
+    for (const auto b : rows) centre += X(b) / static_cast<double>(rows.size());
+    if ((X(a) - centre).norm() > 1e-6 * size_) return in_.skip("CONM2 on an RBE3 away from the mean of its grids", m.place);
+    in_.notes.push_back(fmt::format("{}: CONM2 {}: its mass is shared by the {} grids of the RBE3", m.place, m.id, rows.size()));
+    for (const auto b : rows) on_node[b] += m.mass / static_cast<double>(rows.size()), places.try_emplace(b, m.place);
+  };
+  std::ranges::for_each(masses_, place_mass);
   for (const auto& [a, mass] : on_node)
     if (mass > 0) {
       auto& [rows, place] = on_nodes[mass];
@@ -319,35 +313,26 @@ bool BdfScene::is_joint(const BdfEquation& m) const {
 /// which slides along them.
 void BdfScene::equations() {
   const BdfCase& chosen = deck_.chosen;
-  const auto sum = deck_.tie_sums.find(chosen.mpc);
   EqualDisplacements equals;
   std::map<Displacement, std::string> place;
   std::map<std::pair<std::int64_t, std::int64_t>, std::pair<unsigned, std::string>> joints;  // between rows: components, first place
-  for (const auto& [id, list] : deck_.ties) {
-    const bool taken =
-        !chosen.any || id == chosen.mpc ||
-        (sum != deck_.tie_sums.end() && std::find(sum->second.sets.begin(), sum->second.sets.end(), id) != sum->second.sets.end());
-    if (!taken) in_.skip("MPC of a set that the first subcase does not use", list.front().place, static_cast<std::int64_t>(list.size()));
-    for (const BdfEquation& m : list) {
-      if (!taken) continue;
-      if (is_joint(m)) {
-        const auto a = row(m.terms[0].grid, m.place, "MPC"), b = row(m.terms[1].grid, m.place, "MPC");
-        joints.try_emplace(std::minmax(a, b), 0u, m.place).first->second.first |= 1u << (m.terms[0].component - 1);
-        continue;
-      }
-      if (const std::string why = why_no_sum(m); !why.empty()) {
-        in_.skip("MPC" + why, m.place);
-        continue;
-      }
-      if (!is_slide(m)) {
-        sum_up(m);
-        continue;
-      }
-      const int k = static_cast<int>(m.terms[0].component);
-      const Displacement a{row(m.terms[0].grid, m.place, "MPC"), k}, b{row(m.terms[1].grid, m.place, "MPC"), k};
-      equals.unite(a, b);
-      place.try_emplace(a, m.place), place.try_emplace(b, m.place);
+  const auto take = [&](const BdfEquation& m) {
+    if (is_joint(m)) {
+      const auto a = row(m.terms[0].grid, m.place, "MPC"), b = row(m.terms[1].grid, m.place, "MPC");
+      joints.try_emplace(std::minmax(a, b), 0u, m.place).first->second.first |= 1u << (m.terms[0].component - 1);
+      return;
     }
+    if (const std::string why = why_no_sum(m); !why.empty()) return in_.skip("MPC" + why, m.place);
+    if (!is_slide(m)) return sum_up(m);
+    const int k = static_cast<int>(m.terms[0].component);
+    const Displacement a{row(m.terms[0].grid, m.place, "MPC"), k}, b{row(m.terms[1].grid, m.place, "MPC"), k};
+    equals.unite(a, b);
+    place.try_emplace(a, m.place), place.try_emplace(b, m.place);
+  };
+  for (const auto& [id, list] : deck_.ties.lines) {
+    const bool taken = !chosen.any || deck_.ties.takes(chosen.mpc, id);
+    if (!taken) in_.skip("MPC of a set that the first subcase does not use", list.front().place, static_cast<std::int64_t>(list.size()));
+    if (taken) std::ranges::for_each(list, take);
   }
   for (const auto& [ends, held] : joints)
     joint(held.first, axes(ends.first), end_name(ends.second) + "_equal", end_name(ends.first), end_name(ends.second), X(ends.second),

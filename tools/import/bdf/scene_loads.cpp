@@ -72,28 +72,22 @@ std::vector<Vec3> forces_of_pressure(const std::vector<Vec3>& x, const std::vect
 
 void BdfScene::choose_loads() {
   const BdfCase& chosen = deck_.chosen;
-  std::int64_t take = chosen.load;
-  if (take >= 0 && !deck_.loads.contains(take) && !deck_.load_sums.contains(take))
-    in_.skip(fmt::format("LOAD = {}, of which there is none", take), "case control");
-  if (take < 0 && chosen.spc < 0 && !chosen.any) {  // no case control: one set is meant
-    if (deck_.load_sums.size() == 1)
-      take = deck_.load_sums.begin()->first;
-    else if (deck_.loads.size() == 1)
-      take = deck_.loads.begin()->first;
-  }
+  const auto& all = deck_.loads;
+  if (chosen.load >= 0 && !all.has(chosen.load)) in_.skip(fmt::format("LOAD = {}, of which there is none", chosen.load), "case control");
+  const auto take = chosen.load < 0 && chosen.spc < 0 && !chosen.any ? all.only() : chosen.load;
   std::set<std::int64_t> taken;
   const auto add = [&](double factor, std::int64_t id) {
-    const auto set = deck_.loads.find(id);
-    if (set == deck_.loads.end()) return false;
+    const auto set = all.lines.find(id);
+    if (set == all.lines.end()) return false;
     taken.insert(id);
     for (const BdfLoad& l : set->second) loads_.emplace_back(factor, &l);
     return true;
   };
   add(1, take);
-  if (const auto sum = deck_.load_sums.find(take); sum != deck_.load_sums.end())
-    for (const auto& [factor, id] : sum->second.parts)
-      if (!add(sum->second.factor * factor, id)) in_.skip(fmt::format("LOAD of set {}, of which there is none", id), sum->second.place);
-  for (const auto& [id, lines] : deck_.loads)
+  if (const BdfSum* sum = all.sum(take))
+    for (const auto& [factor, id] : sum->parts)
+      if (!add(sum->factor * factor, id)) in_.skip(fmt::format("LOAD of set {}, of which there is none", id), sum->place);
+  for (const auto& [id, lines] : all.lines)
     if (!taken.contains(id))
       for (const BdfLoad& l : lines) in_.skip(fmt::format("{} of a set that the first subcase does not use", name_of(l.kind)), l.place);
 }
@@ -106,28 +100,21 @@ void BdfScene::gravity() {
 }
 
 /// Of all solids, by load; the angular velocity is that of the entry times the length of its direction.
-void BdfScene::rotation() {
-  for (const auto& [factor, l] : loads_) {
-    if (l->kind != BdfLoad::Kind::rotation) continue;
-    if (factor < 0) {
-      in_.skip("RFORCE times a factor of LOAD below zero", l->place);
-      continue;
-    }
-    const Vec3 at = l->grid ? X(row(l->grid, l->place, "RFORCE")) : Vec3(Vec3::Zero());
-    const Vec3 axis = axes_at(deck_, l->system, at, l->place) * l->direction;
-    std::vector<char> has(in_.mesh.region_name.size(), 0);
-    for (std::int64_t c = 0; c < in_.mesh.n_cells(); ++c)
-      if (info(in_.mesh.shape[static_cast<size_t>(c)]).dimension != 2)
-        has[static_cast<size_t>(in_.mesh.region[static_cast<size_t>(c)])] = 1;
-    if (std::ranges::find(has, 0) != has.end()) in_.skip("RFORCE on shells", l->place);
-    const double omega = 2 * std::numbers::pi * l->size * axis.norm() * std::sqrt(factor), speed = omega / si("s");
-    if (speed == 0) continue;
-    spins_.push_back({at, omega * axis.normalized(), l->place});
-    for (size_t r = 0; r < has.size(); ++r)
-      if (has[r])
-        scene_.add_unique({"load", "centrifugal"}, in_.mesh.region_name[r] + "_centrifugal", l->place,
-                          {{"on", in_.mesh.region_name[r]}, {"at", point(at)}, {"axis", axis.normalized()}, {"speed", std::abs(speed)}});
-  }
+void BdfScene::rotation(double factor, const BdfLoad& l) {
+  if (factor < 0) return in_.skip("RFORCE times a factor of LOAD below zero", l.place);
+  const Vec3 at = l.grid ? X(row(l.grid, l.place, "RFORCE")) : Vec3(Vec3::Zero());
+  const Vec3 axis = axes_at(deck_, l.system, at, l.place) * l.direction;
+  std::vector<char> has(in_.mesh.region_name.size(), 0);
+  for (std::int64_t c = 0; c < in_.mesh.n_cells(); ++c)
+    if (info(in_.mesh.shape[static_cast<size_t>(c)]).dimension != 2) has[static_cast<size_t>(in_.mesh.region[static_cast<size_t>(c)])] = 1;
+  if (std::ranges::find(has, 0) != has.end()) in_.skip("RFORCE on shells", l.place);
+  const double omega = 2 * std::numbers::pi * l.size * axis.norm() * std::sqrt(factor), speed = omega / si("s");
+  if (speed == 0) return;
+  spins_.push_back({at, omega * axis.normalized(), l.place});
+  for (size_t r = 0; r < has.size(); ++r)
+    if (has[r])
+      scene_.add_unique({"load", "centrifugal"}, in_.mesh.region_name[r] + "_centrifugal", l.place,
+                        {{"on", in_.mesh.region_name[r]}, {"at", point(at)}, {"axis", axis.normalized()}, {"speed", std::abs(speed)}});
 }
 
 /// The same on masses at grids, and along beams, where it varies evenly: the force of their mass as drawn.
@@ -143,14 +130,14 @@ void BdfScene::rotation_of_bodies() {
       const Mat3 own = axes_at(deck_, std::max<std::int64_t>(m.system, 0), X(a), m.place);
       const Vec3 arm = end(a) != End::body ? Vec3(Vec3::Zero()) : m.system < 0 ? Vec3(m.offset - X(a)) : Vec3(own * m.offset);
       const Vec3 F = m.mass * pull(X(a) + arm);
-      force_.try_emplace(a, Vec3::Zero(), spin.place).first->second.first += F;
+      force_[a].add(F, spin.place);
       const Mat3 J = own * m.inertia * own.transpose();
       if (const Vec3 M = options_.scale * arm.cross(F) - spin.omega.cross(J * spin.omega); end(a) == End::body && M.norm() > 0)
-        moment_.try_emplace(a, Vec3::Zero(), spin.place).first->second.first += M;
+        moment_[a].add(M, spin.place);
     }
     for (const auto& b : deck_.beams) {
       const DeckSection& s = section_of_beam(deck_, b).section;
-      const double rho = deck_.materials.at(deck_.material_of.at(b.property)).data.density;
+      const double rho = deck_.material(b.property)->second.data.density;
       const double mass = (rho > 0 ? rho * s.area(0.3, b.place).A * options_.scale * options_.scale : 0) + s.line_mass;
       const MadeBeam& beam = made_beams_.at(b.id);
       const Vec3 from = mass * pull(beam.start), to = mass * pull(beam.start + beam.length() * beam.axes.col(0));
@@ -167,32 +154,26 @@ void BdfScene::distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const 
   for (const auto& [grid, w] : m.of) points.push_back(X(row(grid, m.place, "RBE3"))), weights.push_back(w);
   const auto shares = shares_of_mean(points, weights, X(row(m.grid, m.place, "RBE3")), F, M / options_.scale);
   if (!shares) return in_.skip("load on an RBE3 that its grids cannot carry", place);
-  for (size_t i = 0; i < points.size(); ++i)
-    force_.try_emplace(row(m.of[i].first, m.place, "RBE3"), Vec3::Zero(), place).first->second.first += (*shares)[i];
+  for (size_t i = 0; i < points.size(); ++i) force_[row(m.of[i].first, m.place, "RBE3")].add((*shares)[i], place);
 }
 
 /// A pressure that varies evenly over a shell, as forces of its grids: the integrals of N_a p over the element as drawn.
-void BdfScene::varying_pressures() {
-  std::unordered_map<std::int64_t, const BdfDeck::Cell*> shell;
-  for (const auto& s : deck_.shells) shell.try_emplace(s.id, &s);
-  for (const auto& [factor, l] : loads_) {
-    if (l->kind != BdfLoad::Kind::pressure || l->at_corners.empty()) continue;
-    for (const auto element : l->elements) {
-      const auto s = shell.find(element);
-      if (s == shell.end() || info(s->second->shape).n_corners != info(s->second->shape).n_nodes) {
-        in_.skip("PLOAD4 that varies over the face", l->place);
-        continue;
-      }
-      Rows rows;
-      std::vector<Vec3> x;
-      for (const auto grid : s->second->nodes) rows.push_back(row(grid, l->place, "PLOAD4")), x.push_back(X(rows.back()));
-      const Vec3 way = axes_at(deck_, l->system, x[0], l->place) * l->direction;
-      const std::vector<Vec3> f = forces_of_pressure(x, l->at_corners, way);
-      for (size_t i = 0; i < rows.size(); ++i)
-        force_.try_emplace(rows[i], Vec3::Zero(), l->place).first->second.first += factor * options_.scale * options_.scale * f[i];
+void BdfScene::varying_pressure(double factor, const BdfLoad& l) {
+  if (l.at_corners.empty()) return;
+  for (const auto element : l.elements) {
+    const auto s = shell_.find(element);
+    if (s == shell_.end() || info(s->second->shape).n_corners != info(s->second->shape).n_nodes) {
+      in_.skip("PLOAD4 that varies over the face", l.place);
+      continue;
     }
-    in_.notes.push_back(fmt::format("{}: PLOAD4 that varies becomes forces of the grids, which do not turn with the shell", l->place));
+    Rows rows;
+    std::vector<Vec3> x;
+    for (const auto grid : s->second->nodes) rows.push_back(row(grid, l.place, "PLOAD4")), x.push_back(X(rows.back()));
+    const Vec3 way = axes_at(deck_, l.system, x[0], l.place) * l.direction;
+    const std::vector<Vec3> f = forces_of_pressure(x, l.at_corners, way);
+    for (size_t i = 0; i < rows.size(); ++i) force_[rows[i]].add(factor * options_.scale * options_.scale * f[i], l.place);
   }
+  in_.notes.push_back(fmt::format("{}: PLOAD4 that varies becomes forces of the grids, which do not turn with the shell", l.place));
 }
 
 void BdfScene::nodal_loads() {
@@ -231,11 +212,9 @@ void BdfScene::nodal_loads() {
           break;
         }
         [[fallthrough]];
-      case End::body: {
-        const auto [it, fresh] = (force ? force_ : moment_).try_emplace(a, Vec3::Zero(), l->place);
-        it->second.first += v;
+      case End::body:
+        (force ? force_ : moment_)[a].add(v, l->place);
         break;
-      }
       default:
         in_.skip(what + " on a grid of no element", l->place);
     }
@@ -274,52 +253,38 @@ void BdfScene::nodal_loads() {
     scene_.add_unique({"load", "force"}, set, group.second, {{"on", set}, {"force", v * si("N")}, {"per_node", true}});
   }
   for (auto& [a, m] : moment_) {
-    if (is_of_shell(a) && !on_beam_.contains(a) && is_flat(sheets(a))) {
-      const Vec3& n = sheets(a).front().normal;
-      if (std::abs(m.first.dot(n)) > 1e-6 * m.first.norm())
-        in_.skip("MOMENT about the normal of a shell, which does not resist it", m.second);
-      m.first -= n * n.dot(m.first);
-    }
-    if (m.first.norm() > 0)
-      scene_.add_unique({"load", "torque"}, end_name(a) + "_torque", m.second, {{"on", end_name(a)}, {"torque", m.first * si("N m")}});
+    if (is_of_shell(a) && !on_beam_.contains(a) && is_flat(sheets(a)) && drop_drilling(sheets(a), m.value))
+      in_.skip("MOMENT about the normal of a shell, which does not resist it", m.place);
+    if (m.value.norm() > 0)
+      scene_.add_unique({"load", "torque"}, end_name(a) + "_torque", m.place, {{"on", end_name(a)}, {"torque", m.value * si("N m")}});
   }
 }
 
 /// PLOAD1: over a beam or a part of it, or at a point.
-void BdfScene::line_loads() {
-  for (const auto& [factor, l] : loads_) {
-    if (l->kind != BdfLoad::Kind::line) continue;
-    const auto made = made_beams_.find(l->elements.front());
-    if (made == made_beams_.end()) {
-      in_.skip("PLOAD1 on an element that is no beam of the scene", l->place);
-      continue;
-    }
-    const MadeBeam& beam = made->second;
-    if (beam.apart) {
-      in_.skip("PLOAD1 on a beam whose neutral axis is off its shear centre", l->place);
-      continue;
-    }
-    const double whole = beam.length(), unit = l->as_share ? whole : 1;
-    const size_t from = beam.section(l->from_to[0] * unit), to = beam.section(l->from_to[1] * unit);
-    const Vec3 way = l->own_axes ? Vec3(beam.axes * l->direction) : l->direction;
-    if (factor == 0 || (l->size == 0 && l->size_end == 0)) continue;
-    if (from == to) {  // at a point
-      const Vec3 value = factor * l->size * way;
-      SceneTable& load =
-          scene_.add_unique({"load", l->turns ? "torque" : "force"}, beam.name + "_point", l->place, {{"on", beam.body(from)}});
-      if (l->turns)
-        load.set("torque", value * si("N m"));
-      else
-        load.set("force", value * si("N")).set("at", point(beam.start + beam.sections[from] * beam.axes.col(0)));
-      continue;
-    }
-    const Vec3 one = factor * (l->projected ? beam.axes.col(0).cross(way).norm() : 1) * way;
-    if (one.norm() == 0) continue;
-    scene_.add_unique({"load", "line"}, beam.name + "_line", l->place, {{"on", beam.name}, {"force_per_length", l->size * one * si("N/m")}})
-        .set_if(l->size_end != l->size, "force_per_length_end", l->size_end * one * si("N/m"))
-        .set_if(from > 0, "from", beam.sections[from] * options_.scale * si("m"))
-        .set_if(to + 1 < beam.sections.size(), "to", beam.sections[to] * options_.scale * si("m"));
+void BdfScene::line_load(double factor, const BdfLoad& l) {
+  const auto made = made_beams_.find(l.elements.front());
+  if (made == made_beams_.end()) return in_.skip("PLOAD1 on an element that is no beam of the scene", l.place);
+  const MadeBeam& beam = made->second;
+  if (beam.apart) return in_.skip("PLOAD1 on a beam whose neutral axis is off its shear centre", l.place);
+  const double whole = beam.length(), unit = l.as_share ? whole : 1;
+  const size_t from = beam.section(l.from_to[0] * unit), to = beam.section(l.from_to[1] * unit);
+  const Vec3 way = l.own_axes ? Vec3(beam.axes * l.direction) : l.direction;
+  if (factor == 0 || (l.size == 0 && l.size_end == 0)) return;
+  if (from == to) {  // at a point
+    const Vec3 value = factor * l.size * way;
+    SceneTable& load = scene_.add_unique({"load", l.turns ? "torque" : "force"}, beam.name + "_point", l.place, {{"on", beam.body(from)}});
+    if (l.turns)
+      load.set("torque", value * si("N m"));
+    else
+      load.set("force", value * si("N")).set("at", point(beam.start + beam.sections[from] * beam.axes.col(0)));
+    return;
   }
+  const Vec3 one = factor * (l.projected ? beam.axes.col(0).cross(way).norm() : 1) * way;
+  if (one.norm() == 0) return;
+  scene_.add_unique({"load", "line"}, beam.name + "_line", l.place, {{"on", beam.name}, {"force_per_length", l.size * one * si("N/m")}})
+      .set_if(l.size_end != l.size, "force_per_length_end", l.size_end * one * si("N/m"))
+      .set_if(from > 0, "from", beam.sections[from] * options_.scale * si("m"))
+      .set_if(to + 1 < beam.sections.size(), "to", beam.sections[to] * options_.scale * si("m"));
 }
 
 /// The facet of a solid that PLOAD4 names by one or two of its corners.
@@ -336,9 +301,7 @@ Facet BdfScene::face_of_solid(const BdfLoad& l, std::int64_t element) const {
   };
   const int one = local(l.face[0]), other = local(l.face[1]);
   for (size_t i = 0; i < s.facets.size() && s.dimension == 3 && one >= 0 && (other >= 0 || !l.face[1]); ++i) {
-    std::vector<int> of;
-    for (const int a : s.facets[i])
-      if (a < s.n_corners) of.push_back(a);
+    const std::vector<int> of = facet_corners(s, i);
     const auto has = [&](int a) { return std::find(of.begin(), of.end(), a) - of.begin(); };
     const auto n = static_cast<std::ptrdiff_t>(of.size());
     if (has(one) == n) continue;
@@ -360,8 +323,6 @@ void BdfScene::pressures() {
   std::vector<Pushed> pushed;
   std::vector<std::vector<std::int64_t>> corners;  // of shells and faces by their grids
   std::vector<size_t> open;                        // their places in `pushed`
-  std::unordered_map<std::int64_t, const BdfDeck::Cell*> shell;
-  for (const auto& s : deck_.shells) shell.try_emplace(s.id, &s);
   for (const auto& [factor, l] : loads_) {
     if (l->kind != BdfLoad::Kind::pressure || !l->at_corners.empty()) continue;
     std::int64_t missing = 0;
@@ -375,7 +336,7 @@ void BdfScene::pressures() {
     for (const auto element : l->elements)
       if (deck_.cell_row.contains(element))
         pushed.push_back({factor, l, face_of_solid(*l, element), 1});
-      else if (const auto s = shell.find(element); s != shell.end())
+      else if (const auto s = shell_.find(element); s != shell_.end())
         by_grids(s->second->nodes);
       else
         ++missing;
@@ -393,7 +354,7 @@ void BdfScene::pressures() {
 
   using Key = std::pair<std::int64_t, std::int64_t>;
   std::map<Key, std::pair<double, std::string>> pressure;
-  std::map<Key, std::pair<Vec3, std::string>> traction;
+  std::map<Key, Sum> traction;
   std::set<const BdfLoad*> curved;  // said to be so
   for (const auto& [factor, l, f, sign] : pushed) {
     const Key key{f.cell, f.facet};
@@ -407,8 +368,7 @@ void BdfScene::pressures() {
           curved.insert(l).second)
         in_.notes.push_back(
             fmt::format("{}: PLOAD4 in a curved system: its direction on each facet is that at the facet's centre", l->place));
-      traction.try_emplace(key, Vec3::Zero(), l->place).first->second.first +=
-          factor * l->size * (axes_at(deck_, l->system, at, l->place) * l->direction).normalized();
+      traction[key].add(factor * l->size * (axes_at(deck_, l->system, at, l->place) * l->direction).normalized(), l->place);
     } else {
       pressure.try_emplace(key, 0, l->place).first->second.first += factor * l->size * sign;
     }
@@ -418,7 +378,7 @@ void BdfScene::pressures() {
     if (p.first != 0) by_pressure[p.first].first.push_back({key.first, key.second}), by_pressure[p.first].second = p.second;
   std::map<Vec3, std::pair<std::vector<Facet>, std::string>, Vec3Order> by_traction;
   for (const auto& [key, p] : traction)
-    if (p.first.norm() > 0) by_traction[p.first].first.push_back({key.first, key.second}), by_traction[p.first].second = p.second;
+    if (p.value.norm() > 0) by_traction[p.value].first.push_back({key.first, key.second}), by_traction[p.value].second = p.place;
   const auto write = [&](const std::vector<Facet>& facets, const std::string& place, const char* kind, const SceneValue& value) {
     const std::string set = names_.facets(scene_.unique("facets", kind), facets);
     scene_.add_unique({"load", kind}, set, place, {{"on", set}, {kind, value}});

@@ -39,33 +39,25 @@ std::string BdfScene::pair_surface(std::int64_t region) {
 
 void BdfScene::pairs() {
   const BdfCase& taken = deck_.chosen;
-  const auto each = [&](const auto& all, const auto& sums, std::int64_t chosen, const std::string& card, const char* section,
+  const auto each = [&](const BdfSets<BdfGlue>& all, std::int64_t chosen, const std::string& card, const char* section,
                         const std::string& name, const auto& keys) {
-    const auto sum = sums.find(chosen);
-    if (chosen >= 0 && sum == sums.end() && !all.contains(chosen))
+    if (chosen >= 0 && !all.has(chosen))
       in_.skip(fmt::format("{} = {}, of which there is none", card == "BCTSET" ? "BCSET" : card, chosen), "case control");
     std::set<std::pair<std::string, std::string>> seen;
-    for (const auto& [id, list] : all)
-      for (const BdfGlue& g : list) {
-        if (taken.any && id != chosen && (sum == sums.end() || std::ranges::count(sum->second.sets, id) == 0)) {
-          in_.skip(card + " of a set that the first subcase does not use", g.place);
-          continue;
-        }
-        const std::string a = pair_surface(g.target), b = pair_surface(g.source);
-        if (a.empty() || b.empty()) {
-          in_.skip(card + " of a region that is no BSURFS", g.place);
-          continue;
-        }
-        if (!seen.emplace(std::minmax(a, b)).second) {
-          in_.notes.push_back(fmt::format("{}: a [[{}]] has these two regions already", g.place, section));
-          continue;
-        }
-        keys(g, scene_.add_unique(section, fmt::format("{}_{}", name, id), g.place, {{"a", a}, {"b", b}}));
-      }
+    const auto pair = [&](std::int64_t id, const BdfGlue& g) {
+      if (taken.any && !all.takes(chosen, id)) return in_.skip(card + " of a set that the first subcase does not use", g.place);
+      const std::string a = pair_surface(g.target), b = pair_surface(g.source);
+      if (a.empty() || b.empty()) return in_.skip(card + " of a region that is no BSURFS", g.place);
+      if (!seen.emplace(std::minmax(a, b)).second)
+        return in_.notes.push_back(fmt::format("{}: a [[{}]] has these two regions already", g.place, section));
+      keys(g, scene_.add_unique(section, fmt::format("{}_{}", name, id), g.place, {{"a", a}, {"b", b}}));
+    };
+    for (const auto& [id, list] : all.lines)
+      for (const BdfGlue& g : list) pair(id, g);
   };
-  each(deck_.glue, deck_.glue_sums, taken.glue, "BGSET", "tie", "glue",
+  each(deck_.glue, taken.glue, "BGSET", "tie", "glue",
        [&](const BdfGlue& g, SceneTable& tie) { tie.set_if(g.distance > 0, "gap", g.distance * options_.scale * si("m")); });
-  each(deck_.contacts, deck_.contact_sums, taken.contact, "BCTSET", "contact", "contact",
+  each(deck_.contacts, taken.contact, "BCTSET", "contact", "contact",
        [&](const BdfGlue& g, SceneTable& contact) { contact.set_if(g.friction > 0, "friction", g.friction); });
 }
 

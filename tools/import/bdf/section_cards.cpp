@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "base/error.hpp"
 #include "import/bdf/card.hpp"
@@ -27,15 +26,13 @@ void set_shear_centre(BdfThin& s) {
 }
 
 /// PID MID A I1 I2 J NSM; stress points; K1 K2 I12.
-void read_pbar(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
+void read_pbar(const BdfEntry& d, BdfDeck& deck, Imported&) {
   BdfThin s;
   s.section = general_section(d.number(2), d.number(3), d.number(4), d.number(5));
   s.section.line_mass = d.number(6), s.section.I12 = -d.number(18);
   for (size_t i = 8; i < 16; ++i) d.number(i);  // where stresses are asked for
   set_shear(s.section, d.number(16), d.number(17), true);
-  add_property(e, deck, s);
-  if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
+  add_property(d, deck, s);
 }
 
 /// A taper is even between the ends; tells where stations between them say otherwise.
@@ -50,8 +47,7 @@ void check_even(const std::vector<std::pair<double, Numbers>>& stations, const N
 
 /// PID MID A I1 I2 I12 J NSM, stress points; stations of SO X/XB A I1 I2 I12 J NSM, with stress points where SO is YES; K1 K2 S1 S2 NSI CW;
 /// M1 M2 of both ends, N1 N2 of both ends.
-void read_pbeam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_pbeam(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   std::array<double, 6> at_a, at_b;
   for (size_t i = 0; i < 6; ++i) at_a[i] = at_b[i] = d.number(2 + i);
   const auto word = [&](size_t i) { return upper(d.text(i)); };
@@ -84,8 +80,7 @@ void read_pbeam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   }
   if (apart && s.section.line_mass != 0) in.skip("PBEAM: NSM off the neutral axis", d.place(line + 8));
   set_shear_centre(s);
-  add_property(e, deck, s);
-  if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
+  add_property(d, deck, s);
 }
 
 /// Off whose centre of area the shear centre lies.
@@ -101,133 +96,102 @@ DeckSection with_shear_centre(const char* kind, const std::vector<double>& v) {
 /// Shapes that [section.NAME] does not have, along axes 1, against z of the element, and 2, along its y.
 DeckSection rectangles(const std::vector<DeckRectangle>& parts) { return section_of_rectangles(parts, "a TYPE of sections"); }
 
+using Dims = std::vector<double>;
+
 /// Shapes that [section.NAME] has too, and others of rectangles: DIM1 is across plane 1 where the shape has a width.
 struct BeamShape {
+  std::string_view type;
   size_t dims;
-  DeckSection (*of)(const std::vector<double>& dim);
+  DeckSection (*of)(const Dims&);
 };
-const std::map<std::string, BeamShape> beam_shapes{
-    {"ROD",
-     {1,
-      [](const std::vector<double>& v) {
-        return DeckSection{"circle", {{"diameter", 2 * v[0]}}};
-      }}},
-    {"TUBE",
-     {2,
-      [](const std::vector<double>& v) {
-        return DeckSection{"tube", {{"diameter", 2 * v[0]}, {"thickness", v[0] - v[1]}}};
-      }}},
-    {"BAR",
-     {2,
-      [](const std::vector<double>& v) {
-        return DeckSection{"rectangle", {{"width", v[0]}, {"height", v[1]}}};
-      }}},
-    {"BOX",
-     {4,
-      [](const std::vector<double>& v) {
-        if (v[2] == v[3]) return DeckSection{"box", {{"width", v[0]}, {"height", v[1]}, {"thickness", v[2]}}};
-        const double w = v[0] - 2 * v[3], h = v[1] - 2 * v[2], thin = std::min(v[2], v[3]);
-        if (!(thin > 0 && w > 0 && h > 0)) return DeckSection{};
-        const double wm = v[0] - v[3], hm = v[1] - v[2];
-        return general_section(v[0] * v[1] - w * h, (v[0] * std::pow(v[1], 3) - w * h * h * h) / 12,
-                               (v[1] * std::pow(v[0], 3) - h * w * w * w) / 12, 2 * wm * wm * hm * hm / (wm / v[2] + hm / v[3]));
-      }}},
-    {"I",
-     {6,
-      [](const std::vector<double>& v) {
-        if (v[1] != v[2] || v[4] != v[5])  // the flange below is the first
-          return rectangles(
-              {{-v[1] / 2, v[1] / 2, 0, v[4]}, {-v[3] / 2, v[3] / 2, v[4], v[0] - v[5]}, {-v[2] / 2, v[2] / 2, v[0] - v[5], v[0]}});
-        return DeckSection{"I", {{"width", v[1]}, {"height", v[0]}, {"flange", v[4]}, {"web", v[3]}}};
-      }}},
-    {"T", {4, [](const std::vector<double>& v) { return with_shear_centre("T", v); }}},
-    {"CHAN",
-     {4,
-      [](const std::vector<double>& v) {
-        return with_shear_centre("C", {v[0], v[1], v[3], v[2]});
-      }}},
-    {"I1",
-     {4,
-      [](const std::vector<double>& v) {  // flanges beyond the web, web, height of the web, whole height
-        return DeckSection{"I", {{"width", v[0] + v[1]}, {"height", v[3]}, {"flange", (v[3] - v[2]) / 2}, {"web", v[1]}}};
-      }}},
-    {"TUBE2",
-     {2,
-      [](const std::vector<double>& v) {
-        return DeckSection{"tube", {{"diameter", 2 * v[0]}, {"thickness", v[1]}}};
-      }}},
-    {"H",
-     {4,
-      [](const std::vector<double>& v) {  // width between the flanges, width of both, their height, thickness of the web between
-        const double w = v[0] / 2, out = (v[0] + v[1]) / 2;
-        return rectangles({{-out, -w, -v[2] / 2, v[2] / 2}, {-w, w, -v[3] / 2, v[3] / 2}, {w, out, -v[2] / 2, v[2] / 2}});
-      }}},
-    {"CROSS",
-     {4,
-      [](const std::vector<double>& v) {  // width of both arms, width of the upright, its height, thickness of the arms
-        const double w = v[1] / 2, out = (v[0] + v[1]) / 2;
-        return rectangles({{-w, w, -v[2] / 2, v[2] / 2}, {-out, -w, -v[3] / 2, v[3] / 2}, {w, out, -v[3] / 2, v[3] / 2}});
-      }}},
-    {"T1",
-     {4,
-      [](const std::vector<double>& v) {  // height of the flange, length of the web across, thickness of the flange, of the web
-        return rectangles({{0, v[2], -v[0] / 2, v[0] / 2}, {v[2], v[2] + v[1], -v[3] / 2, v[3] / 2}});
-      }}},
-    {"T2",
-     {4,
-      [](const std::vector<double>& v) {  // width of the flange below, whole height, thickness of the flange, of the web
-        return rectangles({{-v[0] / 2, v[0] / 2, 0, v[2]}, {-v[3] / 2, v[3] / 2, v[2], v[1]}});
-      }}},
-    {"CHAN1",
-     {4,
-      [](const std::vector<double>& v) {  // flanges beyond the web, web, height of the web between them, whole height
-        return rectangles(
-            {{0, v[1], -v[3] / 2, v[3] / 2}, {v[1], v[1] + v[0], -v[3] / 2, -v[2] / 2}, {v[1], v[1] + v[0], v[2] / 2, v[3] / 2}});
-      }}},
-    {"CHAN2",
-     {4,
-      [](const std::vector<double>& v) {  // thickness of the legs, of the web across, whole height, whole width
-        const double w = v[3] / 2, in = w - v[0];
-        return rectangles({{-w, -in, 0, v[2]}, {in, w, 0, v[2]}, {-in, in, v[2] - v[1], v[2]}});
-      }}},
-    {"BOX1",
-     {6,
-      [](const std::vector<double>& v) {                         // width, height, walls above, below, left, right
-        if (v[2] != v[3] && v[4] != v[5]) return DeckSection{};  // askew, and which is left not the same in all sources
-        const double w = v[0], h = v[1];
-        return rectangles({{0, v[4], 0, h}, {w - v[5], w, 0, h}, {v[4], w - v[5], 0, v[3]}, {v[4], w - v[5], h - v[2], h}});
-      }}},
-    {"L",
-     {4,
-      [](const std::vector<double>& v) {  // width, towards +z, height, towards +y, thickness of the leg along z, of that along y
-        return rectangles({{-v[3], 0, 0, v[1]}, {-v[0], -v[3], 0, v[2]}});
-      }}},
-    {"Z",
-     {4,
-      [](const std::vector<double>& v) {  // flanges beyond the web, web, height of the web between them, whole height; above towards -z
-        const double t = (v[3] - v[2]) / 2;
-        return rectangles({{-v[1], 0, 0, v[3]}, {0, v[0], v[3] - t, v[3]}, {-v[1] - v[0], -v[1], 0, t}});
-      }}},
-    {"HAT",
-     {4,
-      [](const std::vector<double>& v) {  // height, thickness, width of the top, brims beyond it
-        const double w = v[2] / 2, t = v[1], h = v[0];
-        if (!(w > t)) return DeckSection{};
-        return rectangles(
-            {{-w, w, h - t, h}, {-w, -w + t, t, h - t}, {w - t, w, t, h - t}, {-w - v[3], -w + t, 0, t}, {w - t, w + v[3], 0, t}});
-      }}},
-    {"HAT1",
-     {5,
-      [](const std::vector<double>& v) {  // width of the plate below, whole height, width of the top, thickness of the hat, of the plate
-        const double w = v[2] / 2, out = v[0] / 2, t = v[3], h = v[1], p = v[4];
-        if (!(w > t)) return DeckSection{};
-        return rectangles({{-out, out, 0, p},
-                           {-out, -w + t, p, p + t},
-                           {w - t, out, p, p + t},
-                           {-w, -w + t, p + t, h - t},
-                           {w - t, w, p + t, h - t},
-                           {-w, w, h - t, h}});
-      }}},
+const BeamShape beam_shapes[] = {
+    {"ROD", 1, [](const Dims& v) { return circle_section(2 * v[0]); }},
+    {"TUBE", 2, [](const Dims& v) { return tube_section(2 * v[0], v[0] - v[1]); }},
+    {"TUBE2", 2, [](const Dims& v) { return tube_section(2 * v[0], v[1]); }},
+    {"BAR", 2, [](const Dims& v) { return rectangle_section(v[0], v[1]); }},
+    {"BOX", 4,
+     [](const Dims& v) {
+       if (v[2] == v[3]) return box_section(v[0], v[1], v[2]);
+       const double w = v[0] - 2 * v[3], h = v[1] - 2 * v[2], thin = std::min(v[2], v[3]);
+       if (!(thin > 0 && w > 0 && h > 0)) return DeckSection{};
+       const double wm = v[0] - v[3], hm = v[1] - v[2];
+       return general_section(v[0] * v[1] - w * h, (v[0] * std::pow(v[1], 3) - w * h * h * h) / 12,
+                              (v[1] * std::pow(v[0], 3) - h * w * w * w) / 12, 2 * wm * wm * hm * hm / (wm / v[2] + hm / v[3]));
+     }},
+    {"BOX1", 6,
+     [](const Dims& v) {                                        // width, height, walls above, below, left, right
+       if (v[2] != v[3] && v[4] != v[5]) return DeckSection{};  // askew, and which is left not the same in all sources
+       const double w = v[0], h = v[1];
+       return rectangles({{0, v[4], 0, h}, {w - v[5], w, 0, h}, {v[4], w - v[5], 0, v[3]}, {v[4], w - v[5], h - v[2], h}});
+     }},
+    {"I", 6,
+     [](const Dims& v) {
+       if (v[1] == v[2] && v[4] == v[5]) return I_section(v[1], v[0], v[4], v[3]);
+       return rectangles(  // the flange below is the first
+           {{-v[1] / 2, v[1] / 2, 0, v[4]}, {-v[3] / 2, v[3] / 2, v[4], v[0] - v[5]}, {-v[2] / 2, v[2] / 2, v[0] - v[5], v[0]}});
+     }},
+    // flanges beyond the web, web, height of the web, whole height
+    {"I1", 4, [](const Dims& v) { return I_section(v[0] + v[1], v[3], (v[3] - v[2]) / 2, v[1]); }},
+    {"H", 4,
+     [](const Dims& v) {  // width between the flanges, width of both, their height, thickness of the web between
+       const double w = v[0] / 2, out = (v[0] + v[1]) / 2;
+       return rectangles({{-out, -w, -v[2] / 2, v[2] / 2}, {-w, w, -v[3] / 2, v[3] / 2}, {w, out, -v[2] / 2, v[2] / 2}});
+     }},
+    {"CROSS", 4,
+     [](const Dims& v) {  // width of both arms, width of the upright, its height, thickness of the arms
+       const double w = v[1] / 2, out = (v[0] + v[1]) / 2;
+       return rectangles({{-w, w, -v[2] / 2, v[2] / 2}, {-out, -w, -v[3] / 2, v[3] / 2}, {w, out, -v[3] / 2, v[3] / 2}});
+     }},
+    {"T", 4, [](const Dims& v) { return with_shear_centre("T", v); }},
+    {"T1", 4,
+     [](const Dims& v) {  // height of the flange, length of the web across, thickness of the flange, of the web
+       return rectangles({{0, v[2], -v[0] / 2, v[0] / 2}, {v[2], v[2] + v[1], -v[3] / 2, v[3] / 2}});
+     }},
+    {"T2", 4,
+     [](const Dims& v) {  // width of the flange below, whole height, thickness of the flange, of the web
+       return rectangles({{-v[0] / 2, v[0] / 2, 0, v[2]}, {-v[3] / 2, v[3] / 2, v[2], v[1]}});
+     }},
+    {"CHAN", 4,
+     [](const Dims& v) {
+       return with_shear_centre("C", {v[0], v[1], v[3], v[2]});
+     }},
+    {"CHAN1", 4,
+     [](const Dims& v) {  // flanges beyond the web, web, height of the web between them, whole height
+       return rectangles(
+           {{0, v[1], -v[3] / 2, v[3] / 2}, {v[1], v[1] + v[0], -v[3] / 2, -v[2] / 2}, {v[1], v[1] + v[0], v[2] / 2, v[3] / 2}});
+     }},
+    {"CHAN2", 4,
+     [](const Dims& v) {  // thickness of the legs, of the web across, whole height, whole width
+       const double w = v[3] / 2, in = w - v[0];
+       return rectangles({{-w, -in, 0, v[2]}, {in, w, 0, v[2]}, {-in, in, v[2] - v[1], v[2]}});
+     }},
+    {"L", 4,
+     [](const Dims& v) {  // width, towards +z, height, towards +y, thickness of the leg along z, of that along y
+       return rectangles({{-v[3], 0, 0, v[1]}, {-v[0], -v[3], 0, v[2]}});
+     }},
+    {"Z", 4,
+     [](const Dims& v) {  // flanges beyond the web, web, height of the web between them, whole height; above towards -z
+       const double t = (v[3] - v[2]) / 2;
+       return rectangles({{-v[1], 0, 0, v[3]}, {0, v[0], v[3] - t, v[3]}, {-v[1] - v[0], -v[1], 0, t}});
+     }},
+    {"HAT", 4,
+     [](const Dims& v) {  // height, thickness, width of the top, brims beyond it
+       const double w = v[2] / 2, t = v[1], h = v[0];
+       if (!(w > t)) return DeckSection{};
+       return rectangles(
+           {{-w, w, h - t, h}, {-w, -w + t, t, h - t}, {w - t, w, t, h - t}, {-w - v[3], -w + t, 0, t}, {w - t, w + v[3], 0, t}});
+     }},
+    {"HAT1", 5,
+     [](const Dims& v) {  // width of the plate below, whole height, width of the top, thickness of the hat, of the plate
+       const double w = v[2] / 2, out = v[0] / 2, t = v[3], h = v[1], p = v[4];
+       if (!(w > t)) return DeckSection{};
+       return rectangles({{-out, out, 0, p},
+                          {-out, -w + t, p, p + t},
+                          {w - t, out, p, p + t},
+                          {-w, -w + t, p + t, h - t},
+                          {w - t, w, p + t, h - t},
+                          {-w, w, h - t, h}});
+     }},
 };
 
 /// The same by its numbers.
@@ -239,24 +203,23 @@ DeckSection general_of(const DeckSection& s, const std::string& place) {
 }
 
 /// PID MID GROUP TYPE; DIM1 DIM2 ... NSM
-void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_shape_of_section(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   const std::string type = upper(d.text(3));
   d.text(2);  // the library that has the type
-  const auto shape = beam_shapes.find(type);
+  const auto shape = std::ranges::find(beam_shapes, type, &BeamShape::type);
   const auto refuse = [&](const std::string& what) {
-    return Error(d.place(3), fmt::format("{} {}: {} is not read", e.name, d.integer(0), what),
+    return Error(d.place(3), fmt::format("{} {}: {} is not read", d.name, d.integer(0), what),
                  "ROD, TUBE, TUBE2, BAR, BOX, BOX1, I, I1, H, CROSS, T, T1, T2, CHAN, CHAN1, CHAN2, L, Z, HAT and HAT1 are; write the "
                  "others as PBAR");
   };
-  if (shape == beam_shapes.end()) throw refuse("TYPE " + type);
+  if (shape == std::end(beam_shapes)) throw refuse("TYPE " + type);
   std::vector<double> dims;
-  for (size_t i = 0; i < shape->second.dims; ++i) {
+  for (size_t i = 0; i < shape->dims; ++i) {
     if (d.empty(8 + i)) throw refuse(fmt::format("TYPE {} without DIM{}", type, i + 1));
     dims.push_back(d.number(8 + i));
   }
   BdfThin s;
-  s.section = shape->second.of(dims);
+  s.section = shape->of(dims);
   if (!s.section.given())
     throw refuse("TYPE " + type + (type == "BOX1" && dims[2] != dims[3] && dims[4] != dims[5] ? " that is askew" : " with such walls"));
   const auto end_of = [](const DeckSection& section) { return std::array{-section.shear_centre[1], section.shear_centre[0]}; };
@@ -266,37 +229,35 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   at_a.push_back(s.section.line_mass);
   std::vector<double> at_b = at_a;
   std::vector<std::pair<double, std::vector<double>>> stations;  // X/XB, and the numbers there
-  for (size_t station = 11 + dims.size(); e.name == "PBEAML" && station < d.fields.size(); station += dims.size() + 3) {  // behind SO, X/XB
+  for (size_t station = 11 + dims.size(); d.name == "PBEAML" && station < d.fields.size(); station += dims.size() + 3) {  // behind SO, X/XB
     auto& there = stations.emplace_back(d.number(station - 1), at_a).second;
     for (size_t i = 0; i < at_a.size(); ++i) there[i] = d.number(station + i, at_a[i]);
     if (stations.back().first == 1) at_b = there;
   }
   check_even(stations, at_a, at_b, "PBEAML", d.place(), in);
   if (at_b != at_a) {
-    s.end = shape->second.of({at_b.begin(), at_b.end() - 1});
+    s.end = shape->of({at_b.begin(), at_b.end() - 1});
     if (!s.end.given()) throw refuse("TYPE " + type + " with such walls at end B");
     s.end.line_mass = at_b.back();
     if (s.end.kind != s.section.kind) s.section = general_of(s.section, d.place()), s.end = general_of(s.end, d.place());
     s.neutral[1] = end_of(s.end);
   }
-  if (e.name == "PBARL") s.neutral = {};  // CBAR takes both centres as one
+  if (d.name == "PBARL") s.neutral = {};  // CBAR takes both centres as one
   set_shear_centre(s);
   if (s.section.line_mass != 0 && s.section.shear_centre != std::array{0., 0.})
     in.skip("PBEAML: NSM off the neutral axis", d.place(8 + dims.size()));
-  add_property(e, deck, s);
-  if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
+  add_property(d, deck, s);
 }
 
 }  // namespace
 
-std::span<const BdfCard> bdf_section_cards() {
-  static constexpr BdfCard cards[] = {
+std::vector<BdfCard> bdf_section_cards() {
+  return {
       {"PBAR", read_pbar},
       {"PBEAM", read_pbeam},
       {"PBARL", read_shape_of_section},
       {"PBEAML", read_shape_of_section},
   };
-  return cards;
 }
 
 }  // namespace hilo

@@ -13,8 +13,6 @@
 namespace hilo {
 namespace {
 
-std::int64_t property_of(const DataLine& d, size_t field) { return d.empty(field) ? d.integer(0) : d.integer(field); }
-
 void add(BdfDeck& deck, BdfDeck::Thin c, std::vector<BdfDeck::Thin>& to) {
   if (!deck.cell_ids.insert(c.id).second) throw Error(c.place, fmt::format("element {} is given twice", c.id), "number each element once");
   to.push_back(std::move(c));
@@ -22,9 +20,8 @@ void add(BdfDeck& deck, BdfDeck::Thin c, std::vector<BdfDeck::Thin>& to) {
 
 /// `offset`, `thickness`, `flag`: where a shell entry has its offset, its own thicknesses and what they mean.
 template <size_t corners, size_t middles, size_t offset, size_t thickness, size_t flag>
-void read_shell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
-  BdfDeck::Thin s{{corners == 3 ? tri3 : quad4, d.integer(0), property_of(d, 1), {}, d.place(0)}};
+void read_shell(const BdfEntry& d, BdfDeck& deck, Imported& in) {
+  BdfDeck::Thin s{{corners == 3 ? tri3 : quad4, d.integer(0), d.integer(1, d.integer(0)), {}, d.place(0)}};
   for (size_t i = 0; i < corners; ++i) s.nodes.push_back(d.integer(2 + i));
   size_t there = 0;
   for (size_t i = 0; i < middles; ++i) there += !d.empty(2 + corners + i);
@@ -32,7 +29,7 @@ void read_shell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
     s.shape = corners == 3 ? tri6 : quad8;
     for (size_t i = 0; i < middles; ++i) s.middles.push_back(d.integer(2 + corners + i));
   } else if (there > 0)
-    in.skip(e.name + ": mid-side nodes on some edges only", d.place());
+    in.skip(d.name + ": mid-side nodes on some edges only", d.place());
   if (!d.empty(offset)) s.offset = d.number(offset);
   if (d.is_integer(offset - 1))
     s.material_system = d.integer(offset - 1);
@@ -41,11 +38,11 @@ void read_shell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   for (size_t i = 0; i < corners; ++i) {
     if (d.empty(thickness + i)) continue;
     s.own[i] = d.number(thickness + i);
-    if (!(s.own[i] > 0)) throw Error(d.place(thickness + i), fmt::format("{} {}: T{} {:g} is not above 0", e.name, s.id, i + 1, s.own[i]));
+    if (!(s.own[i] > 0)) throw Error(d.place(thickness + i), fmt::format("{} {}: T{} {:g} is not above 0", d.name, s.id, i + 1, s.own[i]));
   }
   if (!d.empty(flag)) {
     if (d.integer(flag) != 0 && d.integer(flag) != 1)
-      throw Error(d.place(flag), fmt::format("{} {}: TFLAG {} is neither 0 nor 1", e.name, s.id, d.integer(flag)));
+      throw Error(d.place(flag), fmt::format("{} {}: TFLAG {} is neither 0 nor 1", d.name, s.id, d.integer(flag)));
     s.own_are_shares = d.integer(flag) == 1;
   }
   add(deck, std::move(s), deck.shells);
@@ -53,47 +50,44 @@ void read_shell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 
 /// X1 X2 X3 (or G0) OFFT, from the fifth field on.
 template <class Beam>
-void read_orientation(const BdfEntry& e, Beam& b) {
-  const auto& d = e.data;
+void read_orientation(const BdfEntry& d, Beam& b) {
   if (d.empty(5) && d.empty(6) && d.is_integer(4))
     b.towards = d.integer(4);
   else
-    b.v = Vec3(d.number(4), d.number(5), d.number(6));
+    b.v = d.vector(4);
   if (!d.empty(7) && !d.is_integer(7)) b.axes = upper(d.text(7));
   if (!b.axes.empty() && (b.axes.size() != 3 || b.axes.find_first_not_of("GBO") != b.axes.npos || b.axes[0] == 'O'))
-    throw Error(d.place(7), fmt::format("{}: OFFT {} is not three of G, B, O, the first of them G or B", e.name, b.axes));
+    throw Error(d.place(7), fmt::format("{}: OFFT {} is not three of G, B, O, the first of them G or B", d.name, b.axes));
 }
 
 /// EID PID GA GB X1 X2 X3 (or G0) OFFT; PA PB W1A W2A W3A W1B W2B W3B
-void read_beam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
-  BdfDeck::Thin b{{Shape::bar2, d.integer(0), d.empty(1) ? 0 : d.integer(1), {d.integer(2), d.integer(3)}, d.place(0)}};
-  b.card = e.name;
-  read_orientation(e, b);
+void read_beam(const BdfEntry& d, BdfDeck& deck, Imported& in) {
+  BdfDeck::Thin b{{Shape::bar2, d.integer(0), d.integer(1, 0), {d.integer(2), d.integer(3)}, d.place(0)}};
+  b.card = d.name;
+  read_orientation(d, b);
   for (size_t k = 0; k < 2; ++k)
     if (!d.empty(8 + k) && d.text(8 + k) != "0") b.pins[k] = components(d, 8 + k);
   for (int i = 0; i < 3; ++i) b.start[i] = d.number(10 + static_cast<size_t>(i)), b.end[i] = d.number(13 + static_cast<size_t>(i));
-  if (e.name == "CBEAM" && (d.number(16) != 0 || d.number(17) != 0)) in.skip("CBEAM: warping grids SA, SB", d.place(16));
+  if (d.name == "CBEAM" && (d.number(16) != 0 || d.number(17) != 0)) in.skip("CBEAM: warping grids SA, SB", d.place(16));
   add(deck, std::move(b), deck.beams);
 }
 
 /// - PID - - X1 X2 X3 (or G0) OFFT
 void read_beam_default(const BdfEntry& e, BdfDeck& deck, Imported&) {
   BdfBeamDefault& b = deck.beam_default[e.name == "BAROR" ? "CBAR" : "CBEAM"];
-  if (!b.place.empty()) throw Error(e.data.place(), e.name + " is given twice", "give it once");
-  b.place = e.data.place();
-  if (!e.data.empty(1)) b.property = e.data.integer(1);
+  if (!b.place.empty()) throw Error(e.place(), e.name + " is given twice", "give it once");
+  b.place = e.place();
+  if (!e.empty(1)) b.property = e.integer(1);
   read_orientation(e, b);
 }
 
 /// PID MID1 T MID2 12I/T3 MID3 TS/T NSM
-void read_pshell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_pshell(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (d.number(7) != 0) in.skip("PSHELL: mass per area NSM", d.place(7));
   BdfThin s;
   s.thickness = d.number(2);
   s.bends_only = d.empty(1) && !d.empty(3);
-  if (d.empty(3) || (d.integer(3) != (d.empty(1) ? 0 : d.integer(1)) && !s.bends_only))
+  if (d.empty(3) || (d.integer(3) != d.integer(1, 0) && !s.bends_only))
     s.no_solid = "PSHELL with another material in bending, or none";
   else if ((!d.empty(4) && d.number(4) != 1) || !d.empty(10))
     s.no_solid = "PSHELL with 12I/T^3 other than 1, or MID4";
@@ -101,13 +95,11 @@ void read_pshell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
     s.no_solid = "PSHELL with another material in transverse shear";
   if (!d.empty(6) && std::abs(d.number(6) - 5. / 6) > 0.01) in.skip("PSHELL: TS/T, other than 5/6", d.place(6));
   d.ignore_rest();  // where stresses are asked for
-  add_property(e, deck, s);
-  if (!d.empty(1) || s.bends_only) deck.material_of.try_emplace(d.integer(0), d.integer(s.bends_only ? 3 : 1));
+  add_property(d, deck, s, s.bends_only ? 3 : 1);
 }
 
 /// PID Z0 NSM SB FT TREF GE LAM; MID1 T1 THETA1 SOUT1 MID2 T2 ...: a blank MID or T is that of the layer before.
-void read_pcomp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
-  const auto& d = e.data;
+void read_pcomp(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (d.number(2) != 0) in.skip("PCOMP: mass per area NSM", d.place(2));
   std::int64_t material = 0, first = 0;
   double t = 0, sum = 0;
@@ -129,7 +121,7 @@ void read_pcomp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   s.thickness = layers * sum;
   if (!d.empty(1)) s.offset = d.number(1) + s.thickness / 2;
   if (!same) s.no_solid = "PCOMP of several materials";
-  add_property(e, deck, s);
+  add_property(d, deck, s, std::nullopt);
   if (same)
     deck.material_of.try_emplace(d.integer(0), first);
   else
@@ -138,10 +130,11 @@ void read_pcomp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 
 }  // namespace
 
-void add_property(const BdfEntry& e, BdfDeck& deck, BdfThin section) {
-  section.place = e.data.place();
-  if (!deck.thin.try_emplace(e.data.integer(0), section).second)
-    throw Error(e.data.place(0), fmt::format("property {} is given twice", e.data.integer(0)), "number each property once");
+void add_property(const BdfEntry& e, BdfDeck& deck, BdfThin section, std::optional<size_t> material) {
+  section.place = e.place();
+  if (!deck.thin.try_emplace(e.integer(0), section).second)
+    throw Error(e.place(0), fmt::format("property {} is given twice", e.integer(0)), "number each property once");
+  if (material && !e.empty(*material)) deck.material_of.try_emplace(e.integer(0), e.integer(*material));
 }
 
 void resolve_beams(BdfDeck& deck) {
@@ -164,11 +157,7 @@ const BdfThin& section_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
 
 BdfBeamPlace place_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
   std::array<std::int64_t, 2> rows;
-  for (size_t k = 0; k < 2; ++k) {
-    const auto at = deck.row.find(b.nodes[k]);
-    if (at == deck.row.end()) throw Error(b.place, fmt::format("element {} names node {}, which does not exist", b.id, b.nodes[k]));
-    rows[k] = at->second;
-  }
+  for (size_t k = 0; k < 2; ++k) rows[k] = deck.row_of(b.nodes[k], b.place, "element", b.id);
   const auto X = [&](size_t k) { return deck.X[static_cast<size_t>(rows[k])]; };
   const auto turned = [&](size_t letter, size_t k, const Vec3& v) -> Vec3 {
     if (v.norm() == 0 || b.axes[letter] == 'B') return v;
@@ -176,11 +165,7 @@ BdfBeamPlace place_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
     return axes_at(deck, g.output.value_or(0), X(k), g.place) * v;
   };
   BdfBeamPlace out{X(0), X(1), turned(0, 0, b.v)};
-  if (b.towards != 0) {
-    const auto grid = deck.row.find(b.towards);
-    if (grid == deck.row.end()) throw Error(b.place, fmt::format("beam {} names node {}, which does not exist", b.id, b.towards));
-    out.up = deck.X[static_cast<size_t>(grid->second)] - X(0);
-  }
+  if (b.towards != 0) out.up = deck.X[static_cast<size_t>(deck.row_of(b.towards, b.place, "beam", b.id))] - X(0);
   const auto offset = [&](size_t letter, size_t k, const Vec3& v) -> Vec3 {
     if (b.axes[letter] != 'O' || v.norm() == 0) return turned(letter, k, v);
     const Vec3 x = X(1) - X(0), z = x.cross(out.up);  // x from grid to grid
@@ -239,8 +224,8 @@ void add_thin_cell(const BdfDeck& deck, const BdfDeck::Thin& c, std::span<const 
   in.mesh.add_cell(c.shape, rows, -1, c.id);
 }
 
-std::span<const BdfCard> bdf_thin_cards() {
-  static constexpr BdfCard cards[] = {
+std::vector<BdfCard> bdf_thin_cards() {
+  return {
       {"CTRIA3", read_shell<3, 0, 6, 10, 9>},
       {"CTRIAR", read_shell<3, 0, 6, 10, 9>},
       {"CTRIA6", read_shell<3, 3, 9, 10, 13>},
@@ -254,7 +239,6 @@ std::span<const BdfCard> bdf_thin_cards() {
       {"PSHELL", read_pshell},
       {"PCOMP", read_pcomp},
   };
-  return cards;
 }
 
 }  // namespace hilo

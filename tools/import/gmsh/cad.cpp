@@ -10,6 +10,8 @@
 #include <cmath>
 #include <set>
 
+#include "import/data_line.hpp"
+
 namespace hilo {
 namespace {
 
@@ -81,11 +83,8 @@ double metres_of(const std::map<long, std::string>& records, long id, int depth 
 /// The parameters of the global section of an IGES file.
 std::vector<std::string> global_section(const std::string& text) {
   std::string all;
-  for (size_t at = 0; at < text.size();) {
-    const size_t end = std::min(text.find('\n', at), text.size());
-    if (end - at > 72 && text[at + 72] == 'G') all += text.substr(at, 72);
-    at = end + 1;
-  }
+  for (const std::string_view line : lines_of(text))
+    if (line.size() > 72 && line[72] == 'G') all += line.substr(0, 72);
   std::vector<std::string> fields;
   char between = ',', behind = ';';
   for (size_t at = 0; at < all.size();) {

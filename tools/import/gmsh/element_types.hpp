@@ -8,21 +8,17 @@
 
 namespace hilo {
 
-/// A type of element by its number in gmsh; null for one that is not known here.
+/// A type of element by its number in gmsh.  One that is read has our shape and the order of its nodes, ours[i] = gmsh[p[i]].
 struct GmshType {
   int type, dimension, n_nodes;
   const char* name;
-};
-const GmshType* gmsh_type(int type);
-
-/// One that is read: our shape and the order of its nodes, ours[i] = gmsh[p[i]]; null for others.
-struct GmshKind {
-  int type;
-  Shape shape;
-  std::vector<int> p;
+  Shape shape = Shape::bar2;
+  std::vector<int> p = {};
   const char* reduced = nullptr;  // what it was before nodes were left out
+  [[nodiscard]] bool is_read() const { return !p.empty(); }
 };
-const GmshKind* gmsh_kind(int type);
+/// Null for one that is not known here.
+const GmshType* gmsh_type(int type);
 
 /// Corners of a 2-D element type, 0 where it is none.
 size_t face_corners(int type);

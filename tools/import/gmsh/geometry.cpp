@@ -296,6 +296,19 @@ GmshMesh meshed(const std::string& path, const std::string& format, const Import
               "try another --size, or repair the geometry");
 }
 
+/// The same, where gmsh may crash and a script that is not trusted may read files alone; `note` says where the kernel cannot hold it.
+GmshMesh guarded_mesh(const std::string& path, const std::string& format, const ImportOptions& options, double per_turn,
+                      std::string& note) {
+  GmshMesh mesh;
+  const CrashGuard guard(path, "gmsh");
+  const auto mesh_it = [&] { mesh = meshed(path, format, options, per_turn); };
+  if (options.trust)
+    mesh_it();
+  else
+    note = confined(mesh_it);
+  return mesh;
+}
+
 /// What of a mesh is told beside its solids, and what would bring it nearer where it is far.
 void tell_off(Imported& in, const std::array<double, 2>& of, const ImportOptions& o, double per_turn, bool script) {
   const auto by = [](double x) {
@@ -314,38 +327,14 @@ void tell_off(Imported& in, const std::array<double, 2>& of, const ImportOptions
                                  far ? "warning: " : "", by(of[0]), by(of[1]), would_do));
 }
 
-Imported read_geometry(const std::string& path, const std::string& format, const ImportOptions& options) {
-  if (format == "geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
-  const auto meshed_with = [&](double per_turn, std::optional<std::array<double, 2>>& of) {
-    GmshMesh mesh;
-    std::string note;
-    {
-      const CrashGuard guard(path, "gmsh");
-      const auto mesh_it = [&] { mesh = meshed(path, format, options, per_turn); };
-      if (options.trust)
-        mesh_it();
-      else
-        note = confined(mesh_it);
-    }
-    Imported in = imported_from(path, mesh, options, options.order == 2);
-    if (!note.empty()) in.notes.push_back(note);
-    of.reset();
-    if (mesh.solids) of = off(in, *mesh.solids);
-    return in;
-  };
-  std::optional<std::array<double, 2>> of, finer_of;
-  double per_turn = options.per_turn.value_or(usual_per_turn);
-  Imported in = meshed_with(per_turn, of);
-  const bool free = !is_script(format) && !options.size && !options.per_turn;
-  for (int i = 0; i < 3 && free && of && std::abs((*of)[0]) > most_off; ++i) {
-    const double next = std::min(60.0, std::ceil(per_turn * std::sqrt(std::abs((*of)[0]) / (0.8 * most_off))));
-    if (next <= per_turn) break;
-    Imported finer = meshed_with(next, finer_of);
-    if (!finer_of || std::abs((*finer_of)[0]) > 0.9 * std::abs((*of)[0])) break;  // it is not the curves
-    in = std::move(finer), of = finer_of, per_turn = next;
-  }
-  if (of) tell_off(in, *of, options, per_turn, is_script(format));
-  return in;
+/// What gmsh calls the format of a file, by the ending of its name; "" where it is no geometry.
+std::string format_of(const std::string& path) {
+  static const std::map<std::string, std::string> formats{{".geo", "geo"},  {".step", "step"}, {".stp", "step"}, {".brep", "brep"},
+                                                          {".brp", "brep"}, {".iges", "iges"}, {".igs", "iges"}};
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto known = formats.find(ending);
+  return known == formats.end() ? "" : known->second;
 }
 
 /// Surfaces as gmsh's text of version 2.2: those of physical groups alone where there is one, as gmsh saves them.
@@ -374,30 +363,43 @@ std::string text_of(const GmshMesh& mesh) {
 
 }  // namespace
 
-std::string face_of(const std::string& path, const ImportOptions& options) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  const std::map<std::string, const char*> formats{{".geo", "geo"},  {".step", "step"}, {".stp", "step"}, {".brep", "brep"},
-                                                   {".brp", "brep"}, {".iges", "iges"}, {".igs", "iges"}};
-  const auto format = formats.find(ending);
-  if (format == formats.end())
-    throw Error(path, "no geometry that a face can be meshed of", "a .geo, .step, .brep or .iges file; a scene names a .msh file itself");
-  (void)read_text_file(path);  // says what is wrong with it
-  if (ending == ".geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
-  ImportOptions o = options;
-  o.face = true;
-  GmshMesh mesh;
-  const CrashGuard guard(path, "gmsh");
-  const auto mesh_it = [&] { mesh = meshed(path, format->second, o, o.per_turn.value_or(usual_per_turn)); };
-  if (o.trust)
-    mesh_it();
-  else
-    (void)confined(mesh_it);
-  return text_of(mesh);
+Imported read_geometry(const std::string& path, const ImportOptions& options) {
+  const std::string format = format_of(path);
+  if (format == "geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
+  const auto meshed_with = [&](double per_turn, std::optional<std::array<double, 2>>& of) {
+    std::string note;
+    const GmshMesh mesh = guarded_mesh(path, format, options, per_turn, note);
+    Imported in = imported_from(path, mesh, options, options.order == 2);
+    if (!note.empty()) in.notes.push_back(note);
+    of.reset();
+    if (mesh.solids) of = off(in, *mesh.solids);
+    return in;
+  };
+  std::optional<std::array<double, 2>> of, finer_of;
+  double per_turn = options.per_turn.value_or(usual_per_turn);
+  Imported in = meshed_with(per_turn, of);
+  const bool free = !is_script(format) && !options.size && !options.per_turn;
+  for (int i = 0; i < 3 && free && of && std::abs((*of)[0]) > most_off; ++i) {
+    const double next = std::min(60.0, std::ceil(per_turn * std::sqrt(std::abs((*of)[0]) / (0.8 * most_off))));
+    if (next <= per_turn) break;
+    Imported finer = meshed_with(next, finer_of);
+    if (!finer_of || std::abs((*finer_of)[0]) > 0.9 * std::abs((*of)[0])) break;  // it is not the curves
+    in = std::move(finer), of = finer_of, per_turn = next;
+  }
+  if (of) tell_off(in, *of, options, per_turn, is_script(format));
+  return in;
 }
 
-Imported read_geo(const std::string& path, const ImportOptions& options) { return read_geometry(path, "geo", options); }
-Imported read_step(const std::string& path, const ImportOptions& options) { return read_geometry(path, "step", options); }
-Imported read_brep(const std::string& path, const ImportOptions& options) { return read_geometry(path, "brep", options); }
-Imported read_iges(const std::string& path, const ImportOptions& options) { return read_geometry(path, "iges", options); }
+std::string face_of(const std::string& path, const ImportOptions& options) {
+  const std::string format = format_of(path);
+  if (format.empty())
+    throw Error(path, "no geometry that a face can be meshed of", "a .geo, .step, .brep or .iges file; a scene names a .msh file itself");
+  (void)read_text_file(path);  // says what is wrong with it
+  if (format == "geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
+  ImportOptions o = options;
+  o.face = true;
+  std::string note;
+  return text_of(guarded_mesh(path, format, o, o.per_turn.value_or(usual_per_turn), note));
+}
 
 }  // namespace hilo

@@ -3,22 +3,20 @@
 // reference is what gmsh calls an entity; there are no names.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <cmath>
 
 #include "base/error.hpp"
 #include "import/data_line.hpp"
 #include "import/gmsh/element_types.hpp"
 #include "import/gmsh/mesh.hpp"
+#include "import/text_input.hpp"
 
 namespace hilo {
 namespace {
 
-class MeditReader {
+class MeditReader : TextInput {
  public:
-  explicit MeditReader(const std::string& path) : path_(path), text_(read_gz(path, "")) {}
+  explicit MeditReader(const std::string& path) : TextInput(path, read_gz(path, ""), '#') {}
 
   GmshMesh read() {
     if (word() != "MeshVersionFormatted") fail("no mesh of Medit: it does not begin with MeshVersionFormatted");
@@ -40,7 +38,7 @@ class MeditReader {
       }
     }
     name_references();
-    order_nodes();
+    order_nodes(mesh_, entity_of_nodes(mesh_), true);
     return std::move(mesh_);
   }
 
@@ -88,35 +86,9 @@ class MeditReader {
       if (const auto [dimension, reference, part] = key; (dimension == 1 || dimension == 2) && reference != 0) entity.groups = {reference};
   }
 
-  void blanks() {
-    while (at_ < text_.size() && (std::isspace(static_cast<unsigned char>(text_[at_])) || text_[at_] == '#'))
-      if (text_[at_] == '#')
-        at_ = std::min(text_.find('\n', at_), text_.size());
-      else
-        ++at_;
-  }
   char peek() {
     blanks();
     return at_ < text_.size() ? text_[at_] : 'x';
-  }
-  std::string_view word() {
-    blanks();
-    const size_t from = at_;
-    while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
-    return std::string_view(text_).substr(from, at_ - from);
-  }
-  template <class T>
-  T number() {
-    const auto w = word();
-    T value{};
-    const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
-    if (error != std::errc() || end != w.data() + w.size() || !std::isfinite(static_cast<double>(value)))
-      fail(w.empty() ? "the file ends here" : fmt::format("\"{}\" is not a number", w.substr(0, 40)));
-    return value;
-  }
-  [[noreturn]] void fail(const std::string& what, const std::string& hint = "") const {
-    throw Error(fmt::format("{}:{}", path_, 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n')), what,
-                hint);
   }
 
   void vertices(std::int64_t n) {
@@ -127,16 +99,6 @@ class MeditReader {
       mesh_.X.emplace_back(x, y, z);
       mesh_.node_tag.push_back(i);
     }
-  }
-
-  /// As gmsh has them: by entity.
-  void order_nodes() {
-    const auto on = entity_of_nodes(mesh_);
-    std::vector<std::int64_t> order = mesh_.node_tag;
-    std::ranges::stable_sort(order, [&](auto a, auto b) { return on[static_cast<size_t>(a - 1)] < on[static_cast<size_t>(b - 1)]; });
-    std::vector<Vec3> X;
-    for (const auto tag : order) X.push_back(mesh_.X[static_cast<size_t>(tag - 1)]);
-    mesh_.node_tag = std::move(order), mesh_.X = std::move(X);
   }
 
   void elements(const Kind& k, std::int64_t n) {
@@ -150,8 +112,6 @@ class MeditReader {
     }
   }
 
-  std::string path_, text_;
-  size_t at_ = 0;
   GmshMesh mesh_;
   std::int64_t elements_ = 0;
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <span>
 #include <unordered_map>
@@ -102,6 +103,14 @@ class GmshReading {
     return row_[tag];
   }
 
+  /// Calls `use(number, nodes, type)` with each element of an entity.
+  template <class Use>
+  static void each(const GmshMesh::Entity& entity, const Use& use) {
+    for (const auto& b : entity.blocks)
+      for (size_t e = 0, per = b.nodes.size() / std::max<size_t>(1, b.tags.size()); e < b.tags.size(); ++e)
+        use(b.tags[e], std::span(b.nodes).subspan(e * per, per), b.type);
+  }
+
   static constexpr int pyramid5 = 7;
   void add_pyramids(const GmshMesh::Block& b, std::vector<std::int64_t>& cells) {
     if (next_id_ == 0)
@@ -150,11 +159,11 @@ class GmshReading {
         add_pyramids(*b, cells);
         continue;
       }
-      const GmshKind* k = gmsh_kind(b->type);
-      if (!k)
+      const GmshType* k = gmsh_type(b->type);
+      if (!k || !k->is_read())
         throw Error(path_,
-                    fmt::format("{} cells of type \"{}\" in {} {} are not read", b->tags.size(),
-                                gmsh_type(b->type) ? gmsh_type(b->type)->name : fmt::format("{}", b->type), words[dim], std::get<1>(key)),
+                    fmt::format("{} cells of type \"{}\" in {} {} are not read", b->tags.size(), k ? k->name : fmt::format("{}", b->type),
+                                words[dim], std::get<1>(key)),
                     "supported: tetrahedra, hexahedra and prisms of order 1 and 2, pyramids of 5 nodes, lines; with --thickness triangles "
                     "and quadrangles");
       if (k->reduced) reduced_.insert(k->reduced);
@@ -243,19 +252,17 @@ class GmshReading {
       if (!is_beam && !o_.thickness.empty()) continue;
       Lines one;
       for (const auto& key : keys)
-        for (const auto& b : from_.entities.at(key).blocks)
-          for (size_t e = 0; e < b.tags.size(); ++e) {
-            const size_t per = b.nodes.size() / b.tags.size(), at = e * per;
-            const auto first = row(b.nodes[at], b.tags[e]), last = row(b.nodes[at + 1], b.tags[e]);
-            if (is_beam && per > 2) {
-              const auto middle = row(b.nodes[at + 2], b.tags[e]);
-              beams_.add(name, first, middle), beams_.add(name, middle, last);
-            } else if (is_beam) {
-              beams_.add(name, first, last);
-            } else {
-              one.emplace_back(first, last);
-            }
+        each(from_.entities.at(key), [&](std::int64_t e, std::span<const std::int64_t> nodes, int) {
+          const auto first = row(nodes[0], e), last = row(nodes[1], e);
+          if (is_beam && nodes.size() > 2) {
+            const auto middle = row(nodes[2], e);
+            beams_.add(name, first, middle), beams_.add(name, middle, last);
+          } else if (is_beam) {
+            beams_.add(name, first, last);
+          } else {
+            one.emplace_back(first, last);
           }
+        });
       lines.insert(lines.end(), one.begin(), one.end());
       if (!is_beam) of_group[tag] = std::move(one);
     }
@@ -274,6 +281,15 @@ class GmshReading {
       bar_groups_.insert(tag);
       if (!g.cells.empty()) regions_.push_back(std::move(g));
     }
+  }
+
+  /// The corners of each triangle or quadrangle of an entity.
+  void add_faces(const GmshMesh::Entity& entity, std::vector<std::vector<std::int64_t>>& faces) const {
+    each(entity, [&](std::int64_t e, std::span<const std::int64_t> nodes, int type) {
+      const size_t corners = face_corners(type);
+      if (corners) faces.emplace_back();
+      for (const auto tag : nodes.first(corners)) faces.back().push_back(row(tag, e));
+    });
   }
 
   std::vector<std::int64_t> group_nodes(const std::vector<Key>& keys) const {
@@ -298,14 +314,7 @@ class GmshReading {
       return o_.thickness.contains("") || o_.thickness.contains(group_name(2, group.first));
     });
     for (const auto& [tag, keys] : groups) {
-      for (const auto& key : keys)
-        for (const auto& b : from_.entities.at(key).blocks) {
-          const size_t corners = face_corners(b.type), per = b.tags.empty() ? 0 : b.nodes.size() / b.tags.size();
-          for (size_t e = 0; corners && e < b.tags.size(); ++e) {
-            faces.emplace_back();
-            for (size_t i = 0; i < corners; ++i) faces.back().push_back(row(b.nodes[e * per + i], b.tags[e]));
-          }
-        }
+      for (const auto& key : keys) add_faces(from_.entities.at(key), faces);
       first.push_back(faces.size());
     }
     const auto found = facets_of(in_.mesh, faces);
@@ -335,14 +344,10 @@ class GmshReading {
     std::vector<std::pair<std::int64_t, std::int64_t>> lines;
     for (const auto& [key, entity] : from_.entities) {
       if (!entity.groups.empty() || of_surface_.contains(key)) continue;
-      for (const auto& b : entity.blocks)
-        for (size_t e = 0; e < b.tags.size(); ++e) {
-          const size_t per = b.nodes.size() / b.tags.size(), corners = face_corners(b.type);
-          if (corners) faces.emplace_back();
-          for (size_t i = 0; i < corners; ++i) faces.back().push_back(row(b.nodes[e * per + i], b.tags[e]));
-          if (std::get<0>(key) == 1 && of_surface_.empty())
-            lines.emplace_back(row(b.nodes[e * per], b.tags[e]), row(b.nodes[e * per + 1], b.tags[e]));
-        }
+      add_faces(entity, faces);
+      if (std::get<0>(key) == 1 && of_surface_.empty())
+        each(entity,
+             [&](std::int64_t e, std::span<const std::int64_t> nodes, int) { lines.emplace_back(row(nodes[0], e), row(nodes[1], e)); });
     }
     const auto found = facets_of(in_.mesh, faces);
     if (const auto n = std::ranges::count_if(found, [](const auto& f) { return f.empty(); }))
@@ -400,6 +405,17 @@ std::vector<GmshMesh::Key> entity_of_nodes(const GmshMesh& mesh) {
     keys.push_back(found == on.end() ? GmshMesh::Key{4, 0, 0} : found->second);
   }
   return keys;
+}
+
+void order_nodes(GmshMesh& mesh, const std::vector<GmshMesh::Key>& on, bool by_number) {
+  std::vector<size_t> order(mesh.node_tag.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, {},
+                           [&](size_t i) { return std::tuple(std::get<0>(on[i]), std::get<1>(on[i]), by_number ? mesh.node_tag[i] : 0); });
+  std::vector<std::int64_t> tags;
+  std::vector<Vec3> X;
+  for (const size_t i : order) tags.push_back(mesh.node_tag[i]), X.push_back(mesh.X[i]);
+  mesh.node_tag = std::move(tags), mesh.X = std::move(X);
 }
 
 Imported imported_from(const std::string& path, const GmshMesh& mesh, const ImportOptions& options, bool curved) {

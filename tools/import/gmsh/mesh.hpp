@@ -44,6 +44,9 @@ struct GmshMesh {
 /// The entity of least dimension whose elements have the node, for each node.
 std::vector<GmshMesh::Key> entity_of_nodes(const GmshMesh& mesh);
 
+/// The nodes by the dimension and tag of the entity that each is `on`, those of one by their numbers or as they stand.
+void order_nodes(GmshMesh& mesh, const std::vector<GmshMesh::Key>& on, bool by_number);
+
 /// Volume groups become regions, surface groups facet sets, curves and points node sets.  Without volume groups every volume is a region.
 /// A curve group whose lines are no edges of solid cells becomes a region of bars.
 Imported imported_from(const std::string& path, const GmshMesh& mesh, const ImportOptions& options, bool curved = false);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -17,31 +16,18 @@
 #include "import/data_line.hpp"
 #include "import/gmsh/element_types.hpp"
 #include "import/gmsh/mesh.hpp"
+#include "import/text_input.hpp"
 
 namespace hilo {
 namespace {
 
 /// Numbers one after the other, as text or as bytes; an error says the line, in a binary file the byte.
-class MshInput {
+class MshInput : public TextInput {
  public:
-  explicit MshInput(const std::string& path) : path_(path), text_(read_gz(path, "")) {}
+  explicit MshInput(const std::string& path) : TextInput(path, read_gz(path, "")) {}
 
   bool binary = false, swap = false;
 
-  std::string place() const {
-    if (binary) return fmt::format("{}: byte {}", path_, at_);
-    return fmt::format("{}:{}", path_,
-                       1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, text_.size())), '\n'));
-  }
-  [[noreturn]] void fail(const std::string& what, const std::string& hint = "") const { throw Error(place(), what, hint); }
-
-  /// The next word that is text in every file; "" at the end.
-  std::string_view word() {
-    while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
-    const size_t from = at_;
-    while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
-    return std::string_view(text_).substr(from, at_ - from);
-  }
   std::string quoted() {
     const size_t from = text_.find_first_not_of(" \t", at_), line = text_.find('\n', at_);
     const size_t to = from < line && text_[from] == '"' ? text_.find('"', from + 1) : text_.npos;
@@ -63,26 +49,10 @@ class MshInput {
     return std::string_view(text_).substr(at_ - n, n);
   }
 
-  /// A number that is text in binary files too.
-  template <class T>
-  T number_in_text() {
-    const size_t start = at_;
-    const auto w = word();
-    T value{};
-    const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
-    if (error == std::errc() && end == w.data() + w.size()) {
-      if constexpr (std::is_floating_point_v<T>)
-        if (!std::isfinite(value)) fail(fmt::format("\"{}\" is no number that can be computed with", w));
-      return value;
-    }
-    at_ = std::min(text_.find_first_not_of(" \t\r\n", start), text_.size());
-    if (w.empty()) fail("the file ends here");
-    fail(fmt::format("\"{}\" is not {}", w.substr(0, 40), std::is_integral_v<T> ? "a whole number" : "a number"));
-  }
   /// The next number; a T in a binary file.
   template <class T>
   T next() {
-    if (!binary) return number_in_text<T>();
+    if (!binary) return number<T>();
     T value;
     std::array<char, sizeof(T)> raw;
     std::memcpy(raw.data(), bytes(sizeof(T)).data(), sizeof(T));
@@ -95,7 +65,7 @@ class MshInput {
   /// How many things follow, of `numbers` numbers each: no more than the file has room for.
   template <class T>
   size_t count(size_t numbers, bool in_text = false) {
-    const auto n = in_text ? number_in_text<std::int64_t>() : static_cast<std::int64_t>(next<T>());
+    const auto n = in_text ? number<std::int64_t>() : static_cast<std::int64_t>(next<T>());
     const size_t least = binary ? 4 : 2;  // bytes of a number
     if (n < 0 || static_cast<size_t>(n) > (text_.size() - at_) / (least * std::max<size_t>(1, numbers)) + 1)
       fail(fmt::format("a count of {}, more than the rest of the file can hold", n));
@@ -103,8 +73,7 @@ class MshInput {
   }
 
  private:
-  std::string path_, text_;
-  size_t at_ = 0;
+  std::string place() const override { return binary ? fmt::format("{}: byte {}", path_, at_) : TextInput::place(); }
 };
 
 class MshReader {
@@ -175,8 +144,8 @@ class MshReader {
     }
     if (first != "$MeshFormat")
       in_.fail("not a mesh of gmsh: it does not begin with $MeshFormat", "a script is read from a file named .geo");
-    const auto version = in_.number_in_text<double>();
-    const auto binary = in_.number_in_text<int>(), size = in_.number_in_text<int>();
+    const auto version = in_.number<double>();
+    const auto binary = in_.number<int>(), size = in_.number<int>();
     if (version != 2 && version != 2.1 && version != 2.2 && version != 4 && version != 4.1)
       in_.fail(fmt::format("msh {} is not read", version), "save it as msh 4.1 or 2.2");
     if ((binary != 0 && binary != 1) || size != 8) in_.fail("a line of $MeshFormat is: version, 0 or 1, 8");
@@ -193,7 +162,7 @@ class MshReader {
 
   void physical_names() {
     for (size_t n = in_.count<int>(2, true); n > 0; --n) {
-      const int dim = in_.number_in_text<int>(), tag = in_.number_in_text<int>();
+      const int dim = in_.number<int>(), tag = in_.number<int>();
       mesh_.group_name[{dim, tag}] = in_.quoted();
     }
   }
@@ -215,11 +184,17 @@ class MshReader {
       for (size_t i = 0; i < n[static_cast<size_t>(dim)]; ++i) {
         const int tag = in_.next<std::int32_t>();
         auto& entity = mesh_.entities[{dim, tag, 0}];
-        for (int x = dim == 0 && version_ > 4 ? 3 : 6; x > 0; --x) in_.next<double>();
-        for (size_t groups = in_.count<std::int64_t>(1); groups > 0; --groups) entity.groups.push_back(group());
-        if (dim > 0)
-          for (size_t bounds = in_.count<std::int64_t>(1); bounds > 0; --bounds) in_.next<std::int32_t>();
+        for (const int g : rest_of_entity(dim)) entity.groups.push_back(g);
       }
+  }
+  /// Where an entity is, its groups, and what bounds it.
+  std::vector<int> rest_of_entity(int dim) {
+    for (int x = dim == 0 && version_ > 4 ? 3 : 6; x > 0; --x) in_.next<double>();
+    std::vector<int> groups;
+    for (size_t k = in_.count<std::int64_t>(1); k > 0; --k) groups.push_back(group());
+    if (dim > 0)
+      for (size_t bounds = in_.count<std::int64_t>(1); bounds > 0; --bounds) in_.next<std::int32_t>();
+    return groups;
   }
 
   /// Entities that gmsh has cut into parts: what is on a part is on the whole.  Borders between parts are of less dimension than what they
@@ -236,13 +211,9 @@ class MshReader {
         part.is_border = of_dim != dim;
         part.of = {dim, part.is_border ? tag : of, part.is_border ? 1 : 0};  // a border is no entity of the model
         for (size_t k = in_.count<std::int64_t>(1); k > 0; --k) part.partitions.push_back(in_.next<std::int32_t>());
-        for (int x = dim == 0 && version_ > 4 ? 3 : 6; x > 0; --x) in_.next<double>();
-        std::vector<int> groups;
-        for (size_t k = in_.count<std::int64_t>(1); k > 0; --k) groups.push_back(std::abs(in_.next<std::int32_t>()));
+        const auto groups = rest_of_entity(dim);
         auto& entity = mesh_.entities[part.of];
         if (entity.groups.empty() && !part.is_border) entity.groups = groups;  // those of the whole, where it is in the file
-        if (dim > 0)
-          for (size_t bounds = in_.count<std::int64_t>(1); bounds > 0; --bounds) in_.next<std::int32_t>();
       }
   }
   /// gmsh may write each part to a file of its own.
@@ -361,23 +332,13 @@ class MshReader {
     for (int i = 0; i < t.n_nodes; ++i) b.nodes.push_back(version_ > 4 ? big() : in_.next<std::int32_t>());
   }
 
-  /// As gmsh has them: by entity.
   void order_nodes() {
     if (version_ < 4) on_ = entity_of_nodes(mesh_);
-    std::vector<size_t> order(mesh_.node_tag.size());
-    for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-      const auto place = [&](size_t i) {
-        return std::tuple(std::get<0>(on_[i]), std::get<1>(on_[i]), version_ < 4 ? mesh_.node_tag[i] : 0);
-      };
-      return place(a) < place(b);
-    });
-    std::vector<std::int64_t> tags;
-    std::vector<Vec3> X;
-    for (const size_t i : order) tags.push_back(mesh_.node_tag[i]), X.push_back(mesh_.X[i]);
+    hilo::order_nodes(mesh_, on_, version_ < 4);
+    const auto& tags = mesh_.node_tag;
     for (size_t i = 1; i < tags.size(); ++i)
-      if (tags[i] == tags[i - 1] && X[i] != X[i - 1]) throw Error(path_, fmt::format("node {} is given twice, at two places", tags[i]));
-    mesh_.node_tag = std::move(tags), mesh_.X = std::move(X);
+      if (tags[i] == tags[i - 1] && mesh_.X[i] != mesh_.X[i - 1])
+        throw Error(path_, fmt::format("node {} is given twice, at two places", tags[i]));
   }
 
   std::string path_;

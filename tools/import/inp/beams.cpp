@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "base/error.hpp"
-#include "import/inp/ties.hpp"
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 namespace {
@@ -40,24 +40,16 @@ std::map<std::int64_t, const InpSection*> sections_of(const InpDeck& d) {
 Vec3 direction_1(const InpDeck& d, const Mesh& m, const InpSection& s, std::int64_t element, const Vec3& from) {
   const auto towards = d.towards.find(element);
   if (towards == d.towards.end()) return s.n1;
-  const auto a = d.node.find(towards->second);
-  const auto x = d.loose.find(towards->second);
-  if (a == d.node.end() && x == d.loose.end())
-    throw Error(s.place, fmt::format("element {} is turned towards node {}, which does not exist", element, towards->second));
-  return (a != d.node.end() ? m.X[static_cast<size_t>(a->second)] : x->second) - from;
+  const Vec3* to = point_of(d, m, towards->second);
+  if (!to) throw Error(s.place, fmt::format("element {} is turned towards node {}, which does not exist", element, towards->second));
+  return *to - from;
 }
 
 void beams_as_cells(InpDeck& d) {
   for (const auto& [id, b] : d.beams) {
     if (b.nodes.size() != 2)
       throw Error(b.place, fmt::format("{} {}: beams of three nodes are no cells of rigid regions", b.type, id), "B31");
-    d.cell[id] = static_cast<std::int64_t>(d.shape.size());
-    d.shape.push_back(static_cast<std::uint8_t>(Shape::bar2));
-    d.cell_id.push_back(id);
-    d.cell_nodes.insert(d.cell_nodes.end(), b.nodes.begin(), b.nodes.end());
-    d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
-    d.cell_line.push_back(b.line);
-    d.cell_file.push_back(b.file);
+    d.add_cell(id, Shape::bar2, b.nodes, b.file, b.line);
     d.beam_cells.insert(id);
   }
   d.beams.clear();
@@ -67,11 +59,9 @@ void find_beams(InpDeck& d, Imported& in) {
   in.n_beams = static_cast<std::int64_t>(d.beams.size());
   for (const auto& [id, b] : d.beams)
     for (const auto node : b.nodes) {
-      const auto a = d.node.find(node);
-      const auto x = d.loose.find(node);
-      if (a == d.node.end() && x == d.loose.end())
-        throw Error(b.place, fmt::format("element {} names node {}, which does not exist", id, node));
-      d.bodies.try_emplace(node, InpBody{a != d.node.end() ? in.mesh.X[static_cast<size_t>(a->second)] : x->second, b.place, {}});
+      const Vec3* X = point_of(d, in.mesh, node);
+      if (!X) throw Error(b.place, fmt::format("element {} names node {}, which does not exist", id, node));
+      d.bodies.try_emplace(node, InpBody{*X, b.place, {}});
     }
 }
 

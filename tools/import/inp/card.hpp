@@ -4,9 +4,9 @@
 #pragma once
 #include <initializer_list>
 #include <map>
-#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/registry.hpp"
 #include "import/inp/deck.hpp"
@@ -38,16 +38,16 @@ struct InpCard {
 using InpCards = Registry<InpCard>;
 
 /// The families, one file each.
-std::span<const InpCard> inp_mesh_cards();      // *NODE, *ELEMENT, sets, surfaces
-std::span<const InpCard> inp_generate_cards();  // *NGEN, *NFILL, *ELGEN
-std::span<const InpCard> inp_material_cards();  // *MATERIAL and what follows it, sections
-std::span<const InpCard> inp_load_cards();      // supports, loads, histories
-std::span<const InpCard> inp_motion_cards();    // *BASE MOTION
-std::span<const InpCard> inp_tie_cards();       // couplings, rigid bodies, masses, springs
-std::span<const InpCard> inp_contact_cards();   // contact pairs, and what happens between them
-std::span<const InpCard> inp_step_cards();      // heading, parts, steps, procedures
-std::span<const InpCard> inp_modal_cards();     // what sums modes
-std::span<const InpCard> inp_unread_cards();    // requests for output, and cards without which the mesh would be another
+std::vector<InpCard> inp_mesh_cards();      // *NODE, *ELEMENT, sets, surfaces
+std::vector<InpCard> inp_generate_cards();  // *NGEN, *NFILL, *ELGEN
+std::vector<InpCard> inp_material_cards();  // *MATERIAL and what follows it, sections
+std::vector<InpCard> inp_load_cards();      // supports, loads, histories
+std::vector<InpCard> inp_motion_cards();    // *BASE MOTION
+std::vector<InpCard> inp_tie_cards();       // couplings, rigid bodies, masses, springs
+std::vector<InpCard> inp_contact_cards();   // contact pairs, and what happens between them
+std::vector<InpCard> inp_step_cards();      // heading, parts, steps, procedures
+std::vector<InpCard> inp_modal_cards();     // what sums modes
+std::vector<InpCard> inp_unread_cards();    // requests for output, and cards without which the mesh would be another
 /// All of them.
 InpCards& inp_cards();
 
@@ -60,12 +60,18 @@ DeckMaterial& material_of(InpReading& r);
 DeckMaterial& material_of(InpReading& r, DataLine& l, const char* expected);
 
 /// Target of a line: a number or the name of a set.
-void target_of(const DataLine& l, std::string& target, std::int64_t& id);
+InpTarget target_of(const DataLine& l);
 
 /// *ELEMENT of a type of points (MASS, SPRINGA, ...); false where it is of cells.
 bool read_points(InpReading& r, const std::string& type);
 
 /// The first parameter of a card that is not among those known, as "*CLOAD, SECTOR"; "" when all are.
 std::string unknown_param(const Card& card, std::initializer_list<const char*> known);
+/// An Error where there is one.
+void require_known(const Card& card, std::initializer_list<const char*> known, const char* hint);
+/// The card's first data line; Error with what is expected there where it has none.
+void first_line(InpReading& r, DataLine& l, const char* expected);
+/// The step at hand; a procedure may stand without one.
+InpStep& step_of(InpReading& r);
 
 }  // namespace hilo

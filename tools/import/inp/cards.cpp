@@ -27,4 +27,12 @@ std::string unknown_param(const Card& card, std::initializer_list<const char*> k
   return "";
 }
 
+void require_known(const Card& card, std::initializer_list<const char*> known, const char* hint) {
+  if (const auto odd = unknown_param(card, known); !odd.empty()) throw Error(card.place() + ":1", odd + " is not read", hint);
+}
+
+void first_line(InpReading& r, DataLine& l, const char* expected) {
+  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", fmt::format("{} lacks its data line", r.card.name), expected);
+}
+
 }  // namespace hilo

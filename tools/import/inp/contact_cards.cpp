@@ -19,8 +19,7 @@ void read_contact_pair(InpReading& r) {
       !odd.empty())
     return r.skip(odd);
   bool any = false;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     InpPair c;
     c.name = r.card.has("CPSET") ? r.card.need("CPSET") : "contact", c.place = l.place();
     c.slave = upper(l.text(0)), c.master = l.empty(1) ? c.slave : upper(l.text(1));
@@ -79,10 +78,9 @@ void read_friction(InpReading& r) {
 /// Everything with everything, which an empty line says too.
 void read_inclusions(InpReading& r) {
   if (const auto odd = unknown_param(r.card, {"ALLEXTERIOR"}); !odd.empty()) return r.skip(odd);
-  DataLine l;
   bool any = r.card.has("ALLEXTERIOR");
   if (any) r.deck.every_pair = r.card.place();
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     any = true;
     if (l.empty(0) && l.empty(1)) {
       r.deck.every_pair = r.card.place();
@@ -98,8 +96,7 @@ void read_inclusions(InpReading& r) {
 
 /// The interaction of all pairs; that of single ones is not read.
 void read_assignment(InpReading& r) {
-  DataLine l;
-  while (r.lines.next_data(l))
+  for (DataLine l; r.lines.next_data(l);)
     if (l.empty(0) && l.empty(1) && !l.empty(2))
       r.deck.every_interaction = upper(l.text(2));
     else
@@ -112,8 +109,8 @@ void read_general(InpReading& r) {
 
 }  // namespace
 
-std::span<const InpCard> inp_contact_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_contact_cards() {
+  return {
       {"CONTACTPAIR", read_contact_pair, true},
       {"SURFACEINTERACTION", read_interaction, true},
       {"SURFACEBEHAVIOR", read_behavior, true},
@@ -122,7 +119,6 @@ std::span<const InpCard> inp_contact_cards() {
       {"CONTACTINCLUSIONS", read_inclusions, true},
       {"CONTACTPROPERTYASSIGNMENT", read_assignment, true},
   };
-  return cards;
 }
 
 }  // namespace hilo

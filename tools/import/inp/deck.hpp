@@ -26,13 +26,16 @@ struct InpSet {
   std::vector<std::int64_t> members;
   bool unsorted = false;  // UNSORTED: *NFILL takes them in this order, not by number
 };
+/// What a line speaks of: a set, or a node or element by its number.
+struct InpTarget {
+  std::string target;  // upper case, "" for a number
+  std::int64_t id = 0;
+  std::string place = {};
+};
 /// *SURFACE: lines "target, face"; face 0 means the free faces, and in a node surface nothing.
 struct InpSurface {
-  struct Line {
-    std::string target;  // set, upper case, or ""
-    std::int64_t id;     // element or node where there is no set
-    int face;
-    std::string place;
+  struct Line : InpTarget {
+    int face = 0;
     bool of_shell = false;  // SPOS or SNEG: face 2 or 1
   };
   std::string name;
@@ -72,15 +75,12 @@ struct InpBeam {
   int line = 0;
 };
 /// One line of *BOUNDARY, *CLOAD or *INITIAL CONDITIONS, TYPE=VELOCITY: a value on degrees of freedom first..last of a node or node set.
-struct InpNodal {
-  std::string target;  // node set, upper case, or "" for node `id`
-  std::int64_t id;
-  int first, last;
-  double value;
-  std::string amplitude;  // upper case, "" without
-  std::string place;
-  int step = 0;  // 0 before the first
-  int rate = 0;  // of a support: 1 where the value is a velocity, 2 an acceleration
+struct InpNodal : InpTarget {
+  int first = 0, last = 0;
+  double value = 0;
+  std::string amplitude = {};  // upper case, "" without
+  int step = 0;                // 0 before the first
+  int rate = 0;                // of a support: 1 where the value is a velocity, 2 an acceleration
 };
 /// *BASE MOTION: what is held in a component moves along it.
 struct InpBaseMotion {
@@ -89,14 +89,11 @@ struct InpBaseMotion {
   std::string amplitude, place;  // upper case
 };
 /// One line of *DLOAD or *DSLOAD: pressure on a face of elements, or gravity.
-struct InpDistributed {
-  std::string target;  // element set or surface, upper case, or "" for element `id`
-  std::int64_t id;
+struct InpDistributed : InpTarget {
   int face;      // 1.., 0: a whole surface, -1: gravity, -2: centrifugal, -3: along the normal of shells, -4: by length of beams
   double value;  // of the last the square of the speed
   Vec3 direction;
   std::string amplitude;
-  std::string place;
   int step = 0;
   Vec3 at = Vec3::Zero();  // a point of the axis of rotation
 };
@@ -105,12 +102,6 @@ struct InpAmplitude {
   std::vector<double> t, value;
   bool total = false;               // TIME=TOTAL TIME
   std::vector<double> slopes = {};  // at both ends, of a cubic spline; empty: linear between the points
-};
-/// A node by number or by a set that holds it alone.
-struct InpTarget {
-  std::string name;  // upper case, "" for a number
-  std::int64_t id = 0;
-  std::string place = {};
 };
 /// *STEP.
 /// *STEADY STATE DYNAMICS: frequencies, and the ratio of damping of all modes.
@@ -142,15 +133,11 @@ struct InpStep {
   double period() const { return end > 0 ? end : 1; }
 };
 /// *NODAL THICKNESS of shells.
-struct InpThickness {
-  InpTarget node;
+struct InpThickness : InpTarget {
   double value = 0;
 };
 /// *TRANSFORM: axes of nodes.
-struct InpTransform {
-  std::string target;  // node set, upper case
-  std::int64_t id = 0;
-  std::string place;
+struct InpTransform : InpTarget {
   bool cylindrical = false, is_read = true;
   Vec3 a = Vec3::UnitX(), b = Vec3::UnitY();
   /// As columns, at a point; zero where there are none.
@@ -196,16 +183,8 @@ struct InpStepCard {
   std::string name, place;
   int step;
 };
-/// What the scene runs.
-struct InpPlan {
-  std::string procedure;
-  double increment = 0, end = 0;
-  bool direct = false;
-  int n_modes = 0;
-  double alpha = 0, beta = 0, ratio = 0;  // damping of the regions
-  InpSweep sweep = {};
-  std::string place = {};         // of its *STEP
-  bool modal = false;             // without that of materials
+/// What the scene runs: the last of its steps, with the time of all.
+struct InpPlan : InpStep {
   int steps = 1;                  // static ones, one behind the other
   bool from_equilibrium = false;  // of static steps before it
 };
@@ -345,40 +324,19 @@ struct InpDeck {
   std::vector<InpStepCard> step_cards;
   InpPlan plan;
   std::vector<std::string> printed;  // node sets of *NODE PRINT, upper case
+
+  bool has_element(std::int64_t id) const { return points.contains(id) || beams.contains(id) || cell.contains(id); }
+  /// `at`: the line that makes it, in a file of `files`.
+  void add_cell(std::int64_t id, Shape of, std::span<const std::int64_t> nodes, const std::string* at_file, int at_line);
 };
 
 /// Added to the numbers of nodes of an assembly, and for each of several instances.
 inline constexpr std::int64_t assembly_numbers = 1'000'000'000'000, instance_numbers = 1'000'000'000;
 inline std::int64_t InpDeck::node_shift() const { return in_assembly ? assembly_numbers : shift; }
-/// A qualified name, "ASSEMBLY.TOP" or "PART-1-1.TOP", as the deck's own where that is what it has.
-std::string unqualified(const std::string& name);
-/// Supports, loads, surfaces and sections name sets as the deck has them; numbers behind a dot become numbers.
-void unqualify(InpDeck& deck);
-
 /// The set of this name, new where there is none; one of the part makes room in an assembly.
 InpSet& set_of_cells(const std::string& name, InpDeck& deck);
 InpSet& set_of_nodes(const std::string& name, InpDeck& deck);
 /// The shape of an element type, or an Error at the card that says why there is none.
 Shape inp_shape(const Card& card);
-
-/// Scene lines of the deck's materials, supports and loads (in.scene), and the sets that they name.  `node_set` gives the final name
-/// of a node set of the deck, `surface` that of a surface.
-void write_inp_scene(const InpDeck& deck, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
-                     const std::map<std::string, std::string>& surface, const ImportOptions& options);
-/// Beams as cells of bars; an Error where one has three nodes.
-void beams_as_cells(InpDeck& deck);
-/// Of a beam that begins at `from`: towards a node, or as its section says.
-Vec3 direction_1(const InpDeck& deck, const Mesh& mesh, const InpSection& section, std::int64_t element, const Vec3& from);
-/// Nodes of beams are bodies.
-void find_beams(InpDeck& deck, Imported& in);
-/// Nodes of shells that pairs of nodes cannot stand for are bodies.
-void find_bodies_of_shells(InpDeck& deck, Imported& in);
-/// Sections, materials, beams and what ties their nodes to solids, as scene lines.
-void write_beams(const InpDeck& deck, Imported& in, SetNames& names, const ImportOptions& options, SceneWriter& scene);
-/// Facets of the deck's faces: the local facet that has the corners of face `face` of an Abaqus element; -1 where there is none.
-int inp_facet(Shape shape, int face);
-/// Rows of the nodes, or cells, that a target names; numbers that no cell uses are left out.
-std::vector<std::int64_t> inp_nodes(const InpDeck& deck, const std::string& target, std::int64_t id, const std::string& place);
-std::vector<std::int64_t> inp_cells(const InpDeck& deck, const std::string& target, std::int64_t id, const std::string& place);
 
 }  // namespace hilo

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/inp/equations.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "import/inp/groups.hpp"
+#include "import/inp/passes.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 
 namespace hilo {
 
 std::vector<std::int64_t> numbers_of(const InpDeck& d, const InpTarget& t) {
-  if (t.name.empty()) return {t.id};
-  auto set = d.nset.find(t.name);
-  if (set == d.nset.end()) set = d.nset.find(unqualified(t.name));
-  if (set == d.nset.end()) throw Error(t.place, fmt::format("no node set \"{}\"", t.name), suggest_name(t.name, d.nset));
-  return set->second.members;
+  return t.target.empty() ? std::vector{t.id} : set_of(d.nset, t, "node").members;
 }
 
 namespace {
@@ -29,7 +23,7 @@ struct EquationBody {
   bool of_turns = false;  // a ROT NODE, whose displacements are turns
 };
 EquationBody body_of(const InpDeck& d, std::int64_t node) {
-  const auto is = [&](const InpTarget& t) { return (!t.name.empty() || t.id) && std::ranges::count(numbers_of(d, t), node); };
+  const auto is = [&](const InpTarget& t) { return (!t.target.empty() || t.id) && std::ranges::count(numbers_of(d, t), node); };
   for (const InpTie& t : d.ties) {
     if (t.no_node || t.mean || t.kind == InpTie::Of::weighted || t.left_out) continue;
     if (is(t.turns)) return {true, true, numbers_of(d, t.reference).front(), true};
@@ -43,12 +37,8 @@ EquationBody body_of(const InpDeck& d, std::int64_t node) {
 
 /// Why a displacement cannot be one of an equation, or "".
 std::string why_not(const InpDeck& d, const Imported& in, std::int64_t node, int component, const std::set<std::int64_t>& turned) {
-  const auto of_shells = [&](std::int64_t id) {
-    const auto a = d.node.find(id);
-    return a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty();
-  };
   if (component < 1 || component > 6) return "of temperatures or potentials";
-  if (turned.contains(node) && (!d.node.contains(node) || (body_of(d, node).is && !of_shells(node))))
+  if (turned.contains(node) && (!d.node.contains(node) || (body_of(d, node).is && !is_of_pairs(d, in, node))))
     return "in axes of *TRANSFORM, of a node of no solid";
   if (!d.node.contains(node) && !d.loose.contains(node) && !body_of(d, node).is) return "of a node that does not exist";
   for (const InpTie& t : d.ties)
@@ -56,7 +46,7 @@ std::string why_not(const InpDeck& d, const Imported& in, std::int64_t node, int
       return "of the node of a distributing coupling";
   for (const auto& [id, p] : d.points)
     if (p.type == "DCOUP3D" && std::ranges::count(p.nodes, node)) return "of the node of a distributing coupling";
-  if (component > 3 && of_shells(node)) return "of turns of nodes of shells";
+  if (component > 3 && is_of_pairs(d, in, node)) return "of turns of nodes of shells";
   if (component > 3 && !body_of(d, node).turns) return "of turns of a node that has none";
   return "";
 }
@@ -78,15 +68,12 @@ bool of_nothing(const InpSum& s) {
 void find_equations(InpDeck& d, Imported& in) {
   std::set<std::int64_t> turned;
   for (const InpTransform& t : d.transformed)
-    for (const auto id : numbers_of(d, {t.target, t.id, t.place})) turned.insert(id);
+    for (const auto id : numbers_of(d, t)) turned.insert(id);
   EqualDisplacements equals;
   std::map<Displacement, std::string> place;
   std::vector<EquationSum> sums;
   // a node of shells that is a body stands in the mesh all the same
-  const auto is_body = [&](std::int64_t node) {
-    const auto a = d.node.find(node);
-    return body_of(d, node).is && !(a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty());
-  };
+  const auto is_body = [&](std::int64_t node) { return body_of(d, node).is && !is_of_pairs(d, in, node); };
   for (const InpEquation& e : d.equations) {
     std::string why;
     std::vector<std::vector<std::int64_t>> nodes;
@@ -107,7 +94,7 @@ void find_equations(InpDeck& d, Imported& in) {
     if (!why.empty()) {
       in.skip("*EQUATION " + why, e.place);
     } else if (e.terms.size() == 1) {
-      d.supports.push_back({first.node.name, first.node.id, first.component, first.component, 0, "", e.place});
+      d.supports.push_back({{first.node.target, first.node.id, e.place}, first.component, first.component});
     } else if (const auto& second = e.terms.back(); e.terms.size() == 2 && !askew && first.component == second.component &&
                                                     std::abs(first.factor + second.factor) <= 1e-9 * std::abs(first.factor)) {
       for (size_t i = 0; i < n; ++i) {
@@ -132,7 +119,7 @@ void find_equations(InpDeck& d, Imported& in) {
     if (fresh) {
       InpSlide& s = d.slides.emplace_back();
       s.component = x.second, s.place = place[x];
-      s.X = d.node.contains(x.first) ? in.mesh.X[d.node.at(x.first)] : d.loose.at(x.first);
+      s.X = *point_of(d, in.mesh, x.first);
     }
     d.slide_of[x] = at->second;
     if (const auto a = d.node.find(x.first); a != d.node.end()) d.slides[at->second].rows.push_back(a->second);

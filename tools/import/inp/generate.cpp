@@ -18,12 +18,9 @@ namespace {
 constexpr std::int64_t most_generated = 5'000'000;
 constexpr const char* too_many = "is a number wrong?";
 
-/// A whole number of a line, `fallback` where it is empty.
-std::int64_t whole(const DataLine& l, size_t field, std::int64_t fallback) { return l.empty(field) ? fallback : l.integer(field); }
-
 /// How many, from 1 on.
 std::int64_t count_of(const DataLine& l, size_t field, const char* what) {
-  const auto n = whole(l, field, 1);
+  const auto n = l.integer(field, 1);
   if (n < 1 || n > most_generated) throw Error(l.place(field), fmt::format("{} {}", n, what), fmt::format("1 to {}", most_generated));
   return n;
 }
@@ -47,7 +44,7 @@ const Vec3& place_of(const InpDeck& d, std::int64_t node) { return d.X[static_ca
 
 /// A step of numbers.
 std::int64_t step_of(const DataLine& l, size_t field) {
-  const auto by = whole(l, field, 1);
+  const auto by = l.integer(field, 1);
   if (by < -instance_numbers || by > instance_numbers)
     throw Error(l.place(field), fmt::format("a step of {} between numbers", by), too_many);
   return by;
@@ -73,7 +70,7 @@ class Line {
   Line(const InpReading& r, const DataLine& l, const Vec3& a, const Vec3& b) : a_(a), b_(b), kind_(r.card.word("LINE")) {
     if (kind_.empty()) return;
     const std::string system = r.card.word("SYSTEM");
-    extra_ = l.empty(3) ? Vec3(l.number(4), l.number(5), l.number(6)) : place_of(r.deck, known_node(r, l, 3));
+    extra_ = l.empty(3) ? l.vector(4) : place_of(r.deck, known_node(r, l, 3));
     if (l.empty(3) && l.empty(4) && l.empty(5) && l.empty(6))
       throw Error(l.place(3), fmt::format("*NGEN, LINE={} has no extra point", kind_), kind_ == "C" ? "the centre" : "the middle");
     if (l.empty(3) && system == "C") {
@@ -92,7 +89,7 @@ class Line {
  private:
   void arc(const DataLine& l) {
     const Vec3 u = a_ - extra_, v = b_ - extra_;
-    const Vec3 normal(l.number(7), l.number(8), l.number(9));
+    const Vec3 normal = l.vector(7);
     if (!(u.norm() > 0) || !(std::abs(u.norm() - v.norm()) <= 1e-3 * u.norm()))
       throw Error(l.place(l.empty(3) ? 4 : 3), fmt::format("*NGEN, LINE=C: the ends are {:g} and {:g} from the centre", u.norm(), v.norm()),
                   "an arc has one radius");
@@ -123,15 +120,13 @@ class Line {
 void read_ngen(InpReading& r) {
   const Card& card = r.card;
   InpDeck& d = r.deck;
-  if (const auto odd = unknown_param(card, {"NSET", "LINE", "SYSTEM"}); !odd.empty())
-    throw Error(card.place() + ":1", odd + " is not read", "write the nodes out");
+  require_known(card, {"NSET", "LINE", "SYSTEM"}, "write the nodes out");
   const std::string line = card.word("LINE"), system = card.word("SYSTEM");
   if (!line.empty() && line != "C" && line != "P") throw Error(card.place("LINE"), "*NGEN, LINE=" + line, "C, an arc, or P, a parabola");
   if (!system.empty() && system != "RC" && system != "C")
     throw Error(card.place("SYSTEM"), fmt::format("*NGEN, SYSTEM={} is not read", system), "RC or C, or a node as the extra point");
   InpSet* set = card.has("NSET") ? &set_of_nodes(card.need("NSET"), d) : nullptr;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const auto from = known_node(r, l, 0), to = known_node(r, l, 1), by = step_of(l, 2);
     const auto first = from - d.node_shift(), last = to - d.node_shift();
     const Vec3 a = place_of(d, from), b = place_of(d, to);  // copies: the nodes that follow move them
@@ -148,24 +143,26 @@ void read_ngen(InpReading& r) {
   }
 }
 
+/// The set of a name that stands before, in this instance or outside of it.
+const InpSet& earlier_set(const InpReading& r, const std::map<std::string, InpSet>& sets, const std::string& name, const char* kind,
+                          const std::string& place) {
+  auto set = sets.find(upper(r.deck.prefix) + upper(name));
+  if (set == sets.end()) set = sets.find(upper(name));
+  if (set == sets.end()) throw Error(place, fmt::format("{}: no {} \"{}\" so far", r.card.name, kind, name), suggest_name(name, sets));
+  return set->second;
+}
+
 /// The nodes of a set as *NFILL goes through them: by number, where the deck does not say UNSORTED.
 std::vector<std::int64_t> bound(const InpReading& r, const DataLine& l, size_t field) {
   const InpDeck& d = r.deck;
-  std::vector<std::int64_t> ids;
   if (l.is_integer(field)) return {known_node(r, l, field)};
-  auto set = d.nset.find(upper(d.prefix) + upper(l.text(field)));
-  if (set == d.nset.end()) set = d.nset.find(upper(l.text(field)));
-  if (set == d.nset.end())
-    throw Error(l.place(field), fmt::format("*NFILL: no node set \"{}\" so far", l.text(field)),
-                suggest_name(std::string(l.text(field)), d.nset));
-  ids = set->second.members;
-  if (!set->second.unsorted) {
-    sort_unique(ids);
-  }
+  const InpSet& set = earlier_set(r, d.nset, std::string(l.text(field)), "node set", l.place(field));
+  std::vector<std::int64_t> ids = set.members;
+  if (!set.unsorted) sort_unique(ids);
   for (const auto id : ids)
     if (!d.node.contains(id))
-      throw Error(l.place(field), fmt::format("*NFILL: no node {} of set \"{}\" so far", id - d.node_shift(), set->second.name));
-  if (ids.empty()) throw Error(l.place(field), fmt::format("*NFILL: node set \"{}\" is empty", set->second.name));
+      throw Error(l.place(field), fmt::format("*NFILL: no node {} of set \"{}\" so far", id - d.node_shift(), set.name));
+  if (ids.empty()) throw Error(l.place(field), fmt::format("*NFILL: node set \"{}\" is empty", set.name));
   return ids;
 }
 
@@ -195,11 +192,9 @@ std::vector<double> shares(const InpReading& r, std::int64_t n) {
 void read_nfill(InpReading& r) {
   const Card& card = r.card;
   InpDeck& d = r.deck;
-  if (const auto odd = unknown_param(card, {"NSET", "BIAS", "TWOSTEP"}); !odd.empty())
-    throw Error(card.place() + ":1", odd + " is not read", "write the nodes out");
+  require_known(card, {"NSET", "BIAS", "TWOSTEP"}, "write the nodes out");
   InpSet* set = card.has("NSET") ? &set_of_nodes(card.need("NSET"), d) : nullptr;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const auto from = bound(r, l, 0), to = bound(r, l, 1);
     const auto n = count_of(l, 2, "intervals of *NFILL"), by = step_of(l, 3);
     if (from.size() != to.size())
@@ -226,7 +221,7 @@ void copy_element(InpReading& r, std::int64_t from, std::int64_t by, std::int64_
   const auto id = from + by;
   if (id - d.shift < 1 || id - d.shift > last_number(d))
     throw Error(l.place(0), fmt::format("{}: element number {} is not one", r.card.name, id - d.shift));
-  if (d.points.contains(id) || d.beams.contains(id) || d.cell.contains(id))
+  if (d.has_element(id))
     throw Error(l.place(0), fmt::format("{} generates element {}, which is there already", r.card.name, id - d.shift),
                 "number each element once");
   const std::string* file = &*d.files.insert(*l.file).first;
@@ -253,17 +248,9 @@ void copy_element(InpReading& r, std::int64_t from, std::int64_t by, std::int64_
   for (const auto half : {std::int64_t{0}, second_half}) {
     if (half != 0 && !pyramid) break;
     const auto c = static_cast<size_t>(d.cell.at(from + half));
-    const auto shape = d.shape[c];
-    d.cell[id + half] = static_cast<std::int64_t>(d.shape.size());
-    d.shape.push_back(shape);
-    d.cell_id.push_back(id + half);
-    for (auto i = d.offset[c]; i < d.offset[c + 1]; ++i) {
-      const auto node = d.cell_nodes[static_cast<size_t>(i)] + nodes_by;
-      d.cell_nodes.push_back(node);
-    }
-    d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
-    d.cell_line.push_back(l.line);
-    d.cell_file.push_back(file);
+    std::vector<std::int64_t> nodes(d.cell_nodes.begin() + d.offset[c], d.cell_nodes.begin() + d.offset[c + 1]);
+    for (auto& node : nodes) node += nodes_by;
+    d.add_cell(id + half, static_cast<Shape>(d.shape[c]), nodes, file, l.line);
     if (pyramid) d.pyramids.insert(id + half);
   }
 }
@@ -272,14 +259,11 @@ void copy_element(InpReading& r, std::int64_t from, std::int64_t by, std::int64_
 void read_elgen(InpReading& r) {
   const Card& card = r.card;
   InpDeck& d = r.deck;
-  if (const auto odd = unknown_param(card, {"ELSET", "ALLNODES"}); !odd.empty())
-    throw Error(card.place() + ":1", odd + " is not read", "write the elements out");
+  require_known(card, {"ELSET", "ALLNODES"}, "write the elements out");
   InpSet* set = card.has("ELSET") ? &set_of_cells(card.need("ELSET"), d) : nullptr;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const auto number = l.integer(0), master = number < 0 || number > last_number(d) ? 0 : number + d.shift;
-    if (!d.points.contains(master) && !d.beams.contains(master) && !d.cell.contains(master))
-      throw Error(l.place(0), fmt::format("*ELGEN: no element {} so far", number), "*ELEMENT gives it before");
+    if (!d.has_element(master)) throw Error(l.place(0), fmt::format("*ELGEN: no element {} so far", number), "*ELEMENT gives it before");
     std::array<std::int64_t, 3> n, nodes, numbers;
     std::int64_t all = 1;
     for (size_t k = 0; k < 3; ++k) {
@@ -309,8 +293,7 @@ void read_elgen(InpReading& r) {
 /// A whole number of a parameter.
 std::int64_t number_of(const Card& card, const char* key, std::int64_t fallback) {
   if (!card.has(key)) return fallback;
-  const std::string text = card.need(key);
-  const auto n = DataLine{card.file, card.line, {{text, card.params.at(key).column}}}.integer(0);
+  const auto n = card.integer(key);
   if (n < -instance_numbers || n > instance_numbers) throw Error(card.place(key), fmt::format("{}: {}", card.name, n), too_many);
   return n;
 }
@@ -326,14 +309,13 @@ Copied copied_by(InpReading& r) {
   const Card& card = r.card;
   Copied c;
   DataLine l;
-  const auto point = [&](size_t field) { return Vec3(l.number(field), l.number(field + 1), l.number(field + 2)); };
   if (card.has("SHIFT")) {
     while (r.lines.next_data(l)) {
       if (l.fields.size() <= 3) {
-        c.b += point(0);
+        c.b += l.vector(0);
         continue;
       }
-      const Vec3 at = point(0), axis = point(3) - at;
+      const Vec3 at = l.vector(0), axis = l.vector(3) - at;
       if (!(axis.norm() > 0)) throw Error(l.place(3), "*NCOPY: the two points of its axis are one");
       const Mat3 turn = Eigen::AngleAxisd(l.number(6) * std::numbers::pi / 180, axis.normalized()).toRotationMatrix();
       c = {turn * c.A, at + turn * (c.b - at)};
@@ -367,19 +349,13 @@ Copied copied_by(InpReading& r) {
 
 /// The set that a card copies.
 const InpSet& set_to_copy(const InpReading& r, const std::map<std::string, InpSet>& sets) {
-  const std::string name = r.card.need("OLDSET");
-  auto set = sets.find(upper(r.deck.prefix) + upper(name));
-  if (set == sets.end()) set = sets.find(upper(name));
-  if (set == sets.end())
-    throw Error(r.card.place("OLDSET"), fmt::format("{}: no set \"{}\" so far", r.card.name, name), suggest_name(name, sets));
-  return set->second;
+  return earlier_set(r, sets, r.card.need("OLDSET"), "set", r.card.place("OLDSET"));
 }
 
 void read_ncopy(InpReading& r) {
   const Card card = r.card;
   InpDeck& d = r.deck;
-  if (const auto odd = unknown_param(card, {"OLDSET", "CHANGENUMBER", "NEWSET", "SHIFT", "REFLECT", "MULTIPLE"}); !odd.empty())
-    throw Error(card.place() + ":1", odd + " is not read", "write the nodes out");
+  require_known(card, {"OLDSET", "CHANGENUMBER", "NEWSET", "SHIFT", "REFLECT", "MULTIPLE"}, "write the nodes out");
   card.need("CHANGENUMBER");
   if (card.has("SHIFT") == card.has("REFLECT")) throw Error(card.place() + ":1", "*NCOPY: SHIFT or REFLECT is due");
   const auto by = number_of(card, "CHANGENUMBER", 0), times = number_of(card, "MULTIPLE", 1);
@@ -404,8 +380,7 @@ void read_ncopy(InpReading& r) {
 void read_elcopy(InpReading& r) {
   const Card& card = r.card;
   InpDeck& d = r.deck;
-  if (const auto odd = unknown_param(card, {"OLDSET", "ELEMENTSHIFT", "SHIFTNODES", "NEWSET"}); !odd.empty())
-    throw Error(card.place() + ":1", odd + " is not read", "write the elements out");
+  require_known(card, {"OLDSET", "ELEMENTSHIFT", "SHIFTNODES", "NEWSET"}, "write the elements out");
   card.need("ELEMENTSHIFT"), card.need("SHIFTNODES");
   const auto by = number_of(card, "ELEMENTSHIFT", 0), nodes_by = number_of(card, "SHIFTNODES", 0);
   const std::vector<std::int64_t> ids = set_to_copy(r, d.elset).members;
@@ -413,8 +388,7 @@ void read_elcopy(InpReading& r) {
   const DataLine here{card.file, card.line, {{card.name, 1}}};
   count(r, static_cast<std::int64_t>(ids.size()), card.place());
   for (const auto id : ids) {
-    if (!d.points.contains(id) && !d.beams.contains(id) && !d.cell.contains(id))
-      throw Error(card.place("OLDSET"), fmt::format("*ELCOPY: no element {} so far", id - d.shift));
+    if (!d.has_element(id)) throw Error(card.place("OLDSET"), fmt::format("*ELCOPY: no element {} so far", id - d.shift));
     copy_element(r, id, by, nodes_by, here);
     if (set) set->members.push_back(id + by);
   }
@@ -422,10 +396,8 @@ void read_elcopy(InpReading& r) {
 
 }  // namespace
 
-std::span<const InpCard> inp_generate_cards() {
-  static constexpr InpCard cards[] = {
-      {"NGEN", read_ngen}, {"NFILL", read_nfill}, {"ELGEN", read_elgen}, {"NCOPY", read_ncopy}, {"ELCOPY", read_elcopy}};
-  return cards;
+std::vector<InpCard> inp_generate_cards() {
+  return {{"NGEN", read_ngen}, {"NFILL", read_nfill}, {"ELGEN", read_elgen}, {"NCOPY", read_ncopy}, {"ELCOPY", read_elcopy}};
 }
 
 }  // namespace hilo

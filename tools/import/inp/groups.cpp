@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/inp/groups.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <tuple>
 
 #include "base/error.hpp"
-#include "import/inp/ties.hpp"
+#include "import/inp/passes.hpp"
+#include "import/sheets.hpp"
 
 namespace hilo {
 namespace {
@@ -32,9 +31,7 @@ void merge_components(std::vector<Held>& groups) {
 /// How many nodes a line speaks of that no cell uses.
 std::int64_t of_no_cell(const InpDeck& d, const InpNodal& l, bool tied_too = false) {
   const auto lost = [&](std::int64_t id) { return d.unused.contains(id) && (tied_too || !is_tied(d, id)); };
-  if (l.target.empty()) return lost(l.id);
-  const auto set = d.nset.find(l.target);
-  return set == d.nset.end() ? 0 : std::ranges::count_if(set->second.members, lost);
+  return std::ranges::count_if(numbers_in(d.nset, l), lost);
 }
 
 }  // namespace
@@ -57,13 +54,13 @@ Mat3 InpTransform::axes(const Vec3& at) const {
 std::vector<int> turned_nodes(const InpDeck& d, const Mesh& mesh) {
   std::vector<int> turned(mesh.X.size(), -1);
   for (size_t t = 0; t < d.transformed.size(); ++t)
-    for (const auto a : inp_nodes(d, d.transformed[t].target, d.transformed[t].id, d.transformed[t].place)) turned[a] = static_cast<int>(t);
+    for (const auto a : inp_nodes(d, d.transformed[t])) turned[a] = static_cast<int>(t);
   return turned;
 }
 
 /// Nodes of cells that a line speaks of, but for those that are bodies too, of beams: ties speak of these.
 static Rows nodes_of_cells(const InpDeck& d, const InpNodal& l, const Imported& in) {
-  Rows rows = inp_nodes(d, l.target, l.id, l.place);
+  Rows rows = inp_nodes(d, l);
   std::erase_if(rows, [&](std::int64_t a) { return d.bodies.contains(in.mesh.node_id[static_cast<size_t>(a)]); });
   return rows;
 }
@@ -164,7 +161,7 @@ std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& l
     if (const auto n = of_no_cell(d, f, !add)) in.skip(fmt::format("{} on a node of no cell", what), f.place, n);
     Rows nodes = nodes_of_cells(d, f, in);
     if (!add)  // loads reach the bodies, velocities do not
-      if (const size_t all = inp_nodes(d, f.target, f.id, f.place).size(); all > nodes.size())
+      if (const size_t all = inp_nodes(d, f).size(); all > nodes.size())
         in.skip(fmt::format("{} on a node of a beam or a tie", what), f.place, static_cast<std::int64_t>(all - nodes.size()));
     if (nodes.empty()) continue;
     if (f.first > 3) {
@@ -240,41 +237,64 @@ void unqualify(InpDeck& d) {
   for (InpSection& s : d.sections) own(s.elset, none, elset);
   for (InpTransform& t : d.transformed) own(t.target, t.id, nset);
   for (InpEquation& e : d.equations)
-    for (auto& t : e.terms) own(t.node.name, t.node.id, nset);
+    for (auto& t : e.terms) own(t.node.target, t.node.id, nset);
 }
 
-std::vector<std::int64_t> inp_nodes(const InpDeck& d, const std::string& target, std::int64_t id, const std::string& place) {
+const InpSet& set_of(const std::map<std::string, InpSet>& sets, const InpTarget& t, const char* of, bool qualified) {
+  auto set = sets.find(t.target);
+  if (qualified && set == sets.end()) set = sets.find(unqualified(t.target));
+  if (set == sets.end()) throw Error(t.place, fmt::format("no {} set \"{}\"", of, t.target), suggest_name(t.target, sets));
+  return set->second;
+}
+
+std::vector<std::int64_t> numbers_in(const std::map<std::string, InpSet>& sets, const InpTarget& t) {
+  if (t.target.empty()) return {t.id};
+  const auto set = sets.find(t.target);
+  return set == sets.end() ? Rows{} : set->second.members;
+}
+
+std::vector<const InpSection*> section_of_cells(const InpDeck& d) {
+  std::vector<const InpSection*> of(d.shape.size(), nullptr);
+  for (const auto& s : d.sections)
+    for (const auto id : d.elset.at(s.elset).members)
+      if (const auto c = d.cell.find(id); c != d.cell.end()) of[static_cast<size_t>(c->second)] = &s;
+  return of;
+}
+
+const Vec3* point_of(const InpDeck& d, const Mesh& mesh, std::int64_t node) {
+  if (const auto a = d.node.find(node); a != d.node.end()) return &mesh.X[static_cast<size_t>(a->second)];
+  const auto x = d.loose.find(node);
+  return x == d.loose.end() ? nullptr : &x->second;
+}
+
+bool is_of_pairs(const InpDeck& d, const Imported& in, std::int64_t node) {
+  const auto a = d.node.find(node);
+  return a != d.node.end() && !sheets_at(in, a->second).empty();
+}
+
+std::string free_body_name(const InpDeck& d, std::string wish) {
+  const auto taken = [&] {
+    const std::string key = upper(wish);
+    return d.nset.contains(key) || d.elset.contains(key) ||
+           std::ranges::any_of(d.surfaces, [&](const InpSurface& s) { return upper(s.name) == key; });
+  };
+  while (taken()) wish += "_body";
+  return wish;
+}
+
+std::vector<std::int64_t> inp_nodes(const InpDeck& d, const InpTarget& t) {
   Rows rows;
-  if (target.empty()) {
-    if (const auto a = d.node.find(id); a != d.node.end())
-      rows.push_back(a->second);
-    else if (!d.unused.count(id))
-      throw Error(place, fmt::format("no node {}", id));
-    return rows;
-  }
-  const auto set = d.nset.find(target);
-  if (set == d.nset.end()) {
-    throw Error(place, fmt::format("no node set \"{}\"", target), suggest_name(target, d.nset));
-  }
-  for (const auto i : set->second.members)
+  if (t.target.empty() && !d.node.contains(t.id) && !d.unused.contains(t.id)) throw Error(t.place, fmt::format("no node {}", t.id));
+  for (const auto i : t.target.empty() ? Rows{t.id} : set_of(d.nset, t, "node", false).members)
     if (const auto a = d.node.find(i); a != d.node.end()) rows.push_back(a->second);
   sort_unique(rows);
   return rows;
 }
 
-std::vector<std::int64_t> inp_cells(const InpDeck& d, const std::string& target, std::int64_t id, const std::string& place) {
+std::vector<std::int64_t> inp_cells(const InpDeck& d, const InpTarget& t) {
   Rows rows;
-  if (target.empty()) {
-    if (d.beams.contains(id)) return rows;
-    const auto c = d.cell.find(id);
-    if (c == d.cell.end()) throw Error(place, fmt::format("no element {}", id));
-    return {c->second};
-  }
-  const auto set = d.elset.find(target);
-  if (set == d.elset.end()) {
-    throw Error(place, fmt::format("no element set \"{}\"", target), suggest_name(target, d.elset));
-  }
-  for (const auto i : set->second.members)
+  if (t.target.empty() && !d.beams.contains(t.id) && !d.cell.contains(t.id)) throw Error(t.place, fmt::format("no element {}", t.id));
+  for (const auto i : t.target.empty() ? Rows{t.id} : set_of(d.elset, t, "element", false).members)
     if (const auto c = d.cell.find(i); c != d.cell.end()) rows.push_back(c->second);
   sort_unique(rows);
   return rows;

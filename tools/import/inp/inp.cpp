@@ -8,9 +8,7 @@
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
-#include "import/inp/equations.hpp"
-#include "import/inp/steps.hpp"
-#include "import/inp/ties.hpp"
+#include "import/inp/passes.hpp"
 #include "import/sheets.hpp"
 
 namespace hilo {
@@ -146,7 +144,7 @@ void thin_sections(const InpDeck& d, Imported& in, bool thicken) {
   }
   for (const auto* lines : {&d.supports, &d.forces})
     for (const auto& l : *lines) {
-      const auto rows = l.last > 3 && !nodes.empty() ? inp_nodes(d, l.target, l.id, l.place) : std::vector<std::int64_t>{};
+      const auto rows = l.last > 3 && !nodes.empty() ? inp_nodes(d, l) : std::vector<std::int64_t>{};
       if (const auto n = std::ranges::count_if(rows, [&](std::int64_t a) { return nodes.contains(a); }))
         in.skip("turns and moments of nodes of shells and beams", l.place, n);
     }
@@ -174,18 +172,16 @@ std::vector<std::int64_t> rows(const InpSet& s, const std::unordered_map<std::in
 /// The material of every cell goes to the data of its region.
 void region_materials(const InpDeck& d, Imported& in, const std::string& file) {
   Mesh& m = in.mesh;
-  std::vector<const DeckMaterial*> of_cell(m.shape.size(), nullptr), of_region(m.region_name.size(), nullptr);
-  for (const auto& s : d.sections)
-    for (const auto id : d.elset.at(s.elset).members)
-      if (const auto c = d.cell.find(id); c != d.cell.end()) of_cell[c->second] = &d.laws.at(s.law);
+  std::vector<const DeckMaterial*> of_region(m.region_name.size(), nullptr);
+  const auto section = section_of_cells(d);
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
     const auto*& r = of_region[m.region[c]];
-    if (r && of_cell[c] && r != of_cell[c])
-      throw Error(
-          file,
-          fmt::format("region \"{}\" holds cells of materials \"{}\" and \"{}\"", m.region_name[m.region[c]], r->name, of_cell[c]->name),
-          "choose --regions within one material");
-    if (of_cell[c]) r = of_cell[c];
+    const DeckMaterial* law = section[c] ? &d.laws.at(section[c]->law) : nullptr;
+    if (r && law && r != law)
+      throw Error(file,
+                  fmt::format("region \"{}\" holds cells of materials \"{}\" and \"{}\"", m.region_name[m.region[c]], r->name, law->name),
+                  "choose --regions within one material");
+    if (law) r = law;
   }
   for (size_t r = 0; r < of_region.size(); ++r)
     if (of_region[r]) {
@@ -200,13 +196,11 @@ void region_materials(const InpDeck& d, Imported& in, const std::string& file) {
 bool is_nastran(const std::string& path) {
   const std::string text = read_gz(path, "");
   bool bulk = false;
-  for (size_t from = 0; from < text.size();) {
-    const size_t end = std::min(text.find('\n', from), text.size());
-    const std::string line = upper(std::string_view(text).substr(from, std::min<size_t>(end - from, 16)));
+  for (const std::string_view whole : lines_of(text)) {
+    const std::string line = upper(whole.substr(0, 16));
     if (line.starts_with("*") && line.size() > 1 && std::isalpha(static_cast<unsigned char>(line[1]))) return false;
     bulk = bulk || line.starts_with("BEGINBULK") || line.starts_with("GRID,") || line.starts_with("GRID*") ||
            (line.starts_with("GRID") && line.size() > 4 && std::isdigit(static_cast<unsigned char>(line[4])));
-    from = end + 1;
   }
   return bulk;
 }
@@ -303,7 +297,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   if (in.sheets)
     find_bodies_of_shells(d, in);
   else
-    for (const InpThickness& t : d.thicknesses) in.skip("*NODAL THICKNESS of regions that are rigid", t.node.place);
+    for (const InpThickness& t : d.thicknesses) in.skip("*NODAL THICKNESS of regions that are rigid", t.place);
 
   std::unordered_set<std::int64_t> points;  // elements that are no cells
   for (const auto& [id, p] : d.points) points.insert(id);
@@ -328,7 +322,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     std::vector<Facet> facets;
     bool below = false;  // the faces of shells against their normals
     for (const auto& line : s.lines) {
-      const auto cells = inp_cells(d, line.target, line.id, line.place);
+      const auto cells = inp_cells(d, line);
       if (line.face == 0) {
         const auto free = free_facets(in.mesh, cells);
         facets.insert(facets.end(), free.begin(), free.end());
@@ -366,7 +360,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     if (!s.of_nodes) continue;
     std::vector<std::int64_t> nodes;
     for (const auto& line : s.lines) {
-      const auto more = inp_nodes(d, line.target, line.id, line.place);
+      const auto more = inp_nodes(d, line);
       nodes.insert(nodes.end(), more.begin(), more.end());
     }
     // whole faces of them are what a *TIE or *CONTACT PAIR can speak of
@@ -382,8 +376,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   find_equations(d, in);
   find_ties(d, in, surface);
   for (const auto& [id, body] : d.bodies)
-    if (const auto a = d.node.find(id); a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty())
-      in.body_of_node[a->second] = body_name(d, id);
+    if (is_of_pairs(d, in, id)) in.body_of_node[d.node.at(id)] = body_name(d, id);
   write_inp_scene(d, in, names, node_set, surface, options);
   return in;
 }

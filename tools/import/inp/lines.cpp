@@ -12,12 +12,6 @@
 namespace hilo {
 namespace {
 
-std::string_view strip(std::string_view s) {
-  while (!s.empty() && std::isspace(static_cast<unsigned char>(s.front()))) s.remove_prefix(1);
-  while (!s.empty() && std::isspace(static_cast<unsigned char>(s.back()))) s.remove_suffix(1);
-  return s;
-}
-
 /// Cut at commas outside double quotes.
 void cut(std::string_view line, std::vector<DataField>& fields) {
   fields.clear();
@@ -35,12 +29,9 @@ void cut(std::string_view line, std::vector<DataField>& fields) {
   while (!fields.empty() && fields.back().text.empty()) fields.pop_back();
 }
 
-std::string unquote(std::string_view s) {
-  if (s.size() > 1 && s.front() == '"' && s.back() == '"') s = s.substr(1, s.size() - 2);
-  return std::string(s);
-}
-
 }  // namespace
+
+std::string_view unquote(std::string_view s) { return s.size() > 1 && s.front() == '"' && s.back() == '"' ? s.substr(1, s.size() - 2) : s; }
 
 std::string Card::place() const { return fmt::format("{}:{}", *file, line); }
 const Card::Param* Card::find(const std::string& param) const {
@@ -57,11 +48,15 @@ std::string Card::value(const std::string& param, const std::string& fallback) c
   const Param* p = find(param);
   return p ? p->value : fallback;
 }
-std::string Card::word(const std::string& param) const { return upper(value(param)); }
+std::string Card::word(const std::string& param, const std::string& fallback) const { return upper(value(param, fallback)); }
 std::string Card::need(const std::string& param) const {
   const Param* p = find(param);
   if (!p || p->value.empty()) throw Error(fmt::format("{}:1", place()), fmt::format("{} lacks {}=", name, param));
   return p->value;
+}
+double Card::number(const std::string& param) const { return DataLine{file, line, {{need(param), params.at(param).column}}}.number(0); }
+std::int64_t Card::integer(const std::string& param) const {
+  return DataLine{file, line, {{need(param), params.at(param).column}}}.integer(0);
 }
 
 InpLines::InpLines(const std::string& path) : folder_(std::filesystem::path(path).parent_path().string()) { open(path, ""); }
@@ -228,7 +223,7 @@ bool InpLines::next_card(Card& card) {
       const auto value = eq == std::string_view::npos ? std::string_view{} : strip(f.text.substr(eq + 1));
       const int column =
           eq == std::string_view::npos || value.empty() ? f.column : f.column + static_cast<int>(value.data() - f.text.data());
-      card.params[key] = {unquote(value), column};
+      card.params[key] = {std::string(unquote(value)), column};
     }
     if (more && !next_line(line)) break;
     if (more && strip(line).front() == '*') {  // a comma at the end with nothing behind it

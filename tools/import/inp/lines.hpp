@@ -35,10 +35,16 @@ struct Card {
   bool has(const std::string& param) const { return find(param) != nullptr; }
   std::string value(const std::string& param, const std::string& fallback = "") const;
   /// The value upper case without blanks: what keywords are compared with.
-  std::string word(const std::string& param) const;
+  std::string word(const std::string& param, const std::string& fallback = "") const;
   /// The value of a parameter that must be there.
   std::string need(const std::string& param) const;
+  /// The same as a number; Error where it is none.
+  double number(const std::string& param) const;
+  std::int64_t integer(const std::string& param) const;
 };
+
+/// A text without the quotes about it.
+std::string_view unquote(std::string_view text);
 
 /// Reads a deck card by card, line by line; *INCLUDE is followed in place.  Plain or gzip text.
 class InpLines {

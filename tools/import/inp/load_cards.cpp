@@ -10,17 +10,11 @@
 
 namespace hilo {
 
-void target_of(const DataLine& l, std::string& target, std::int64_t& id) {
-  id = 0;
-  target.clear();
-  if (l.is_integer(0)) {
-    id = l.integer(0);
-    return;
-  }
-  std::string_view text = l.text(0);
-  if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
-  target = upper(text);
-  if (target.empty()) throw Error(l.place(0), "expected a number or the name of a set");
+InpTarget target_of(const DataLine& l) {
+  if (l.is_integer(0)) return {"", l.integer(0), l.place()};
+  InpTarget t{upper(unquote(l.text(0))), 0, l.place()};
+  if (t.target.empty()) throw Error(l.place(0), "expected a number or the name of a set");
+  return t;
 }
 
 namespace {
@@ -51,7 +45,7 @@ void read_supports(InpReading& r) {
   InpDeck& d = r.deck;
   Imported& in = r.in;
   if (const auto odd = unknown_param(card, {"OP", "AMPLITUDE", "TYPE", "FIXED", "LOADCASE"}); !odd.empty()) return r.skip(odd);
-  const std::string type = card.has("TYPE") ? card.word("TYPE") : "DISPLACEMENT";
+  const std::string type = card.word("TYPE", "DISPLACEMENT");
   const int rate = type == "VELOCITY" ? 1 : type == "ACCELERATION" ? 2 : 0;
   if (rate == 0 && type != "DISPLACEMENT") return r.skip("*BOUNDARY, TYPE=" + type);
   if (other_case(r)) return;
@@ -60,12 +54,9 @@ void read_supports(InpReading& r) {
   else if (r.step == 1 && card.word("OP") == "NEW")
     d.supports.erase(d.supports.begin(), d.supports.begin() + static_cast<std::ptrdiff_t>(std::exchange(r.supports_before_step, 0)));
   const std::string amplitude = card.word("AMPLITUDE");
-  DataLine l;
-  while (r.lines.next_data(l)) {
-    InpNodal b;
+  for (DataLine l; r.lines.next_data(l);) {
+    InpNodal b{target_of(l)};
     b.amplitude = amplitude, b.step = r.step, b.rate = rate;
-    b.place = l.place();
-    target_of(l, b.target, b.id);
     if (!l.is_integer(1)) {
       const auto pairs = named_support(upper(l.text(1)));
       if (pairs.empty()) throw Error(l.place(1), fmt::format("*BOUNDARY: expected a degree of freedom, found \"{}\"", l.text(1)));
@@ -78,24 +69,20 @@ void read_supports(InpReading& r) {
     b.first = static_cast<int>(l.integer(1));
     b.last = l.empty(2) ? b.first : static_cast<int>(l.integer(2));
     b.value = l.number(3);
-    if (b.first < 1 || b.first > 6) {
-      in.skip(fmt::format("*BOUNDARY on degree of freedom {}", b.first), b.place);
-      continue;
-    }
     b.last = std::min(b.last, 6);
-    d.supports.push_back(b);
+    if (b.first < 1 || b.first > 6)
+      in.skip(fmt::format("*BOUNDARY on degree of freedom {}", b.first), b.place);
+    else
+      d.supports.push_back(b);
   }
 }
 
 /// A value on a degree of freedom of a node or set, line by line.
 void read_nodal(InpReading& r, std::vector<InpNodal>& into) {
   const Card& card = r.card;
-  DataLine l;
-  while (r.lines.next_data(l)) {
-    InpNodal f;
+  for (DataLine l; r.lines.next_data(l);) {
+    InpNodal f{target_of(l)};
     f.amplitude = card.word("AMPLITUDE"), f.step = r.step;
-    f.place = l.place();
-    target_of(l, f.target, f.id);
     f.first = f.last = static_cast<int>(l.integer(1));
     f.value = l.number(2);
     if (f.first < 1 || f.first > 6)
@@ -124,26 +111,25 @@ void read_distributed(InpReading& r) {
   if (other_case(r)) return;
   const bool surface = card.key == "DSLOAD";
   if (r.step > 1 && card.word("OP") == "NEW") r.deck.steps.back().new_distributed = true;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const std::string label = upper(l.text(1));
-    InpDistributed p{"", 0, 0, l.number(2), Vec3::Zero(), card.word("AMPLITUDE"), l.place(), r.step};
+    const double value = l.number(2);
     if (l.text(0).empty()) {  // Abaqus: no target means the whole model
-      in.skip(fmt::format("{} without a set", card.name), p.place);
+      in.skip(fmt::format("{} without a set", card.name), l.place());
       continue;
     }
-    target_of(l, p.target, p.id);
+    InpDistributed p{target_of(l), 0, value, Vec3::Zero(), card.word("AMPLITUDE"), r.step};
     if (surface && label == "P")
       p.face = 0;
     else if (!surface && label == "GRAV") {
       p.face = -1;
-      p.direction = Vec3(l.number(3), l.number(4), l.number(5));
+      p.direction = l.vector(3);
       if (p.direction.norm() == 0) throw Error(l.place(3), "GRAV: the direction has no length");
       p.direction.normalize();
     } else if (!surface && label == "CENTRIF") {
       p.face = -2;
-      p.at = Vec3(l.number(3), l.number(4), l.number(5));
-      p.direction = Vec3(l.number(6), l.number(7), l.number(8));
+      p.at = l.vector(3);
+      p.direction = l.vector(6);
       if (p.direction.norm() == 0) throw Error(l.place(6), "CENTRIF: the axis has no length");
       if (p.value < 0) throw Error(l.place(2), "CENTRIF: the square of a speed is below zero");
       p.direction.normalize();
@@ -162,11 +148,11 @@ void read_distributed(InpReading& r) {
 }
 
 void read_transform(InpReading& r) {
-  InpTransform t{upper(r.card.need("NSET")), 0, r.card.place()};
-  const std::string type = r.card.has("TYPE") ? r.card.word("TYPE") : "R";
+  InpTransform t{{upper(r.card.need("NSET")), 0, r.card.place()}};
+  const std::string type = r.card.word("TYPE", "R");
   t.cylindrical = type == "C", t.is_read = type == "R" || type == "C";
   DataLine l;
-  if (r.lines.next_data(l)) t.a = Vec3(l.number(0), l.number(1), l.number(2)), t.b = Vec3(l.number(3), l.number(4), l.number(5));
+  if (r.lines.next_data(l)) t.a = l.vector(0), t.b = l.vector(3);
   r.deck.transformed.push_back(t);
 }
 
@@ -182,8 +168,7 @@ void read_amplitude(InpReading& r) {
   auto& a = r.deck.amplitudes[upper(name)];
   if (!a.name.empty()) throw Error(card.place(), fmt::format("*AMPLITUDE {} is given twice", name), "give each a name of its own");
   a.name = name, a.total = card.word("TIME").starts_with("TOTAL");
-  DataLine l;
-  while (r.lines.next_data(l))
+  for (DataLine l; r.lines.next_data(l);)
     for (size_t i = 0; i < l.fields.size(); i += 2) {  // a last value that is not there is 0
       if (l.empty(i)) continue;
       const double t = l.number(i);
@@ -196,13 +181,12 @@ void read_amplitude(InpReading& r) {
 
 }  // namespace
 
-std::span<const InpCard> inp_load_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_load_cards() {
+  return {
       {"BOUNDARY", read_supports, false, true},  {"CLOAD", read_forces, false, true},       {"DLOAD", read_distributed, false, true},
       {"DSLOAD", read_distributed, false, true}, {"INITIALCONDITIONS", read_initial, true}, {"AMPLITUDE", read_amplitude},
       {"TRANSFORM", read_transform, true},
   };
-  return cards;
 }
 
 }  // namespace hilo

@@ -17,7 +17,7 @@ DeckMaterial& material_of(InpReading& r) {
   return r.deck.materials[r.deck.material];
 }
 DeckMaterial& material_of(InpReading& r, DataLine& l, const char* expected) {
-  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", fmt::format("{} lacks its data line", r.card.name), expected);
+  first_line(r, l, expected);
   return material_of(r);
 }
 
@@ -60,7 +60,7 @@ void set_orthotropic(DeckMaterial& m, const std::vector<double>& v) {
 }
 
 void read_elastic(InpReading& r) {
-  const std::string type = r.card.has("TYPE") ? r.card.word("TYPE") : "ISO";
+  const std::string type = r.card.word("TYPE", "ISO");
   DataLine l;
   if (type.starts_with("ENGINEERING")) {
     auto& m = material_of(r, l, "E1, E2, E3, nu12, nu13, nu23, G12, G13 and on the next line G23");
@@ -91,7 +91,7 @@ void read_elastic(InpReading& r) {
 
 /// Yield stress by equivalent plastic strain, of the first temperature.
 void read_plastic(InpReading& r) {
-  const std::string hardening = r.card.has("HARDENING") ? r.card.word("HARDENING") : "ISOTROPIC";
+  const std::string hardening = r.card.word("HARDENING", "ISOTROPIC");
   if (hardening != "ISOTROPIC" && hardening != "KINEMATIC") return no_law(r, material_of(r), "*PLASTIC, HARDENING=" + hardening);
   DataLine l;
   auto& m = material_of(r, l, "yield stress, plastic strain");
@@ -119,7 +119,7 @@ void read_plastic(InpReading& r) {
 void read_rates(InpReading& r) {
   DataLine l;
   auto& m = material_of(r, l, "D, n");
-  const std::string type = r.card.has("TYPE") ? r.card.word("TYPE") : "POWERLAW";
+  const std::string type = r.card.word("TYPE", "POWERLAW");
   if (type != "POWERLAW") return no_law(r, m, "*RATE DEPENDENT, TYPE=" + type);
   const double D = l.number(0), n = l.number(1);
   if (!(D > 0)) throw Error(l.place(0), fmt::format("material {}: *RATE DEPENDENT: D = {:g} is not positive", m.name, D));
@@ -190,32 +190,18 @@ void read_orientation(InpReading& r) {
   InpOrientation o;
   o.name = r.card.need("NAME"), o.place = r.card.place();
   DataLine l;
-  const std::string system = r.card.has("SYSTEM") ? r.card.word("SYSTEM") : "RECTANGULAR";
+  const std::string system = r.card.word("SYSTEM", "RECTANGULAR");
   if (system != "RECTANGULAR") {
     o.not_read = "*ORIENTATION, SYSTEM=" + system;
   } else if (const auto odd = unknown_param(r.card, {"NAME", "SYSTEM"}); !odd.empty()) {
     o.not_read = odd;
   } else {
-    if (!r.lines.next_data(l))
-      throw Error(r.card.place() + ":1", "*ORIENTATION lacks its data line", "a point on axis 1, one in the plane 1-2");
+    first_line(r, l, "a point on axis 1, one in the plane 1-2");
     for (int i = 0; i < 3; ++i) o.a[i] = l.number(i) - l.number(6 + i), o.b[i] = l.number(3 + i) - l.number(6 + i);
     if (!(o.a.cross(o.b).norm() > 0)) throw Error(l.place(), fmt::format("*ORIENTATION {}: the two points span no plane", o.name));
     if (r.lines.next_data(l) && l.number(1) != 0) o.not_read = "*ORIENTATION turned about an axis";
   }
   r.deck.orientations[upper(o.name)] = o;
-}
-
-void read_section(InpReading& r) {
-  const Card& card = r.card;
-  InpSection s{upper(card.need("ELSET")), upper(card.value("MATERIAL")), card.need("ELSET"),
-               card.value("MATERIAL"),    card.place("ELSET"),           card.place("MATERIAL")};
-  if (s.material.empty()) r.skip("*SOLID SECTION without MATERIAL");
-  if (card.has("ORIENTATION"))
-    s.orientation_name = card.need("ORIENTATION"), s.orientation = upper(s.orientation_name),
-    s.orientation_place = card.place("ORIENTATION");
-  DataLine l;
-  if (r.lines.next_data(l)) s.area = l.number(0);
-  r.deck.sections.push_back(s);
 }
 
 InpSection section_of(InpReading& r, bool layered = false) {
@@ -227,11 +213,21 @@ InpSection section_of(InpReading& r, bool layered = false) {
   return s;
 }
 
+void read_section(InpReading& r) {
+  const Card& card = r.card;
+  InpSection s = section_of(r);
+  if (card.has("ORIENTATION"))
+    s.orientation_name = card.need("ORIENTATION"), s.orientation = upper(s.orientation_name),
+    s.orientation_place = card.place("ORIENTATION");
+  DataLine l;
+  if (r.lines.next_data(l)) s.area = l.number(0);
+  r.deck.sections.push_back(s);
+}
+
 /// Lines of COMPOSITE: thickness, points of integration, material and orientation of each layer.  Layers of one material are one plate.
 void read_layers(InpReading& r, InpSection& s) {
-  DataLine l;
   bool same = true;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     const double t = l.number(0);
     if (!(t > 0)) throw Error(l.place(0), fmt::format("{}: a layer of thickness {:g}", r.card.name, t));
     if (l.empty(2)) throw Error(l.place(), r.card.name + ", COMPOSITE: a layer without a material", "thickness, , MATERIAL");
@@ -259,7 +255,7 @@ void read_shell_section(InpReading& r) {
     read_layers(r, s);
   } else {
     DataLine l;
-    if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data line", "the thickness");
+    first_line(r, l, "the thickness");
     s.thickness = l.number(0);
     if (!(s.thickness > 0)) throw Error(l.place(0), fmt::format("{}: a thickness of {:g}", r.card.name, s.thickness));
   }
@@ -274,12 +270,8 @@ void read_shell_section(InpReading& r) {
 }
 
 void read_nodal_thickness(InpReading& r) {
-  DataLine l;
-  while (r.lines.next_data(l)) {
-    InpThickness t;
-    t.node.place = l.place();
-    target_of(l, t.node.name, t.node.id);
-    t.value = l.number(1);
+  for (DataLine l; r.lines.next_data(l);) {
+    const InpThickness t{target_of(l), l.number(1)};
     if (!(t.value > 0)) throw Error(l.place(1), fmt::format("{}: a thickness of {:g}", r.card.name, t.value));
     r.deck.thicknesses.push_back(t);
   }
@@ -292,14 +284,14 @@ DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::ar
   const std::string type = card.word("SECTION").starts_with("RECT") ? "RECT" : card.word("SECTION");
   const auto v = [&](size_t i) { return l.number(i, i == 1 && type == "RECT" ? l.number(0) : 0); };
   extent = {v(0), v(1)};
-  if (type == "RECT") return {"rectangle", {{"width", v(1)}, {"height", v(0)}}};
+  if (type == "RECT") return rectangle_section(v(1), v(0));
   if (type == "CIRC" || type == "PIPE") extent = {2 * v(0), 2 * v(0)};
   if (type == "CIRC" && l.empty(1)) {
     r.skip(
         "*BEAM SECTION, SECTION=CIRC: its one number is the radius, as in Abaqus; in CalculiX it is the diameter, and two are diameters");
-    return {"circle", {{"diameter", 2 * v(0)}}};
+    return circle_section(2 * v(0));
   }
-  if (type == "CIRC" && v(0) == v(1)) return {"circle", {{"diameter", v(0)}}};
+  if (type == "CIRC" && v(0) == v(1)) return circle_section(v(0));
   if (type == "CIRC") {  // the ellipse of CalculiX
     const double p = v(0) / 2, q = v(1) / 2, pi = std::numbers::pi;
     extent = {v(0), v(1)};
@@ -307,13 +299,13 @@ DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::ar
     s.shear = {0.89, 0.89};  // of a circle
     return s;
   }
-  if (type == "PIPE") return {"tube", {{"diameter", 2 * v(0)}, {"thickness", v(1)}}};
+  if (type == "PIPE") return tube_section(2 * v(0), v(1));
   const bool equal = v(2) == v(3) && v(3) == v(4) && v(4) == v(5);
-  if (type == "BOX" && equal) return {"box", {{"width", v(1)}, {"height", v(0)}, {"thickness", v(2)}}};
+  if (type == "BOX" && equal) return box_section(v(1), v(0), v(2));
   along_n2 = type == "I";
   if (along_n2 && v(2) == v(3) && v(4) == v(5)) {
     above = v(1) / 2 - v(0);
-    return {"I", {{"width", v(2)}, {"height", v(1)}, {"flange", v(4)}, {"web", v(6)}}};
+    return I_section(v(2), v(1), v(4), v(6));
   }
   if (along_n2) {  // origin from below, height, widths below and above, their thicknesses, web; a flange of no width makes a T
     const double h = v(1), below = v(2) > 0 ? v(4) : 0, top = v(3) > 0 ? v(5) : 0;
@@ -340,17 +332,16 @@ DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::ar
 
 /// Sizes of the section, then its direction 1.
 void read_beam_section(InpReading& r) {
-  if (const auto odd = unknown_param(r.card, {"ELSET", "MATERIAL", "SECTION", "ORIENTATION", "OFFSET1", "OFFSET2"}); !odd.empty())
-    throw Error(r.card.place() + ":1", odd + " is not read", "a section without it");
+  require_known(r.card, {"ELSET", "MATERIAL", "SECTION", "ORIENTATION", "OFFSET1", "OFFSET2"}, "a section without it");
   InpSection s = section_of(r);
   DataLine l;
-  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data line", "the sizes of the section");
+  first_line(r, l, "the sizes of the section");
   r.card.need("SECTION");
   std::array<double, 2> extent;
   double above = 0;
   s.beam = beam_shape(r, l, s.along_n2, extent, above);
   s.beam.area(0.3, l.place(0));
-  if (r.lines.next_data(l)) s.n1 = Vec3(l.number(0), l.number(1), l.number(2));
+  if (r.lines.next_data(l)) s.n1 = l.vector(0);
   for (int k = 0; k < 2; ++k)
     if (const char* key = k == 0 ? "OFFSET1" : "OFFSET2"; r.card.has(key)) {
       const std::string word = r.card.word(key);
@@ -365,11 +356,10 @@ void read_beam_section(InpReading& r) {
 /// A, I11, I12, I22, J; direction 1; E, G.  Direction 1 is axis 2 of hilo, so I11 = int x2^2 is I2.  With a shape and a MATERIAL, as in
 /// CalculiX, it is *BEAM SECTION.
 void read_general_section(InpReading& r) {
-  const std::string type = r.card.has("SECTION") ? r.card.word("SECTION") : "GENERAL";
+  const std::string type = r.card.word("SECTION", "GENERAL");
   if (type != "GENERAL" && r.card.has("MATERIAL")) return read_beam_section(r);
   if (type != "GENERAL") throw Error(r.card.place("SECTION"), fmt::format("{}, SECTION={} is not read", r.card.name, type), "GENERAL is");
-  if (const auto odd = unknown_param(r.card, {"ELSET", "SECTION", "DENSITY", "POISSON"}); !odd.empty())
-    throw Error(r.card.place() + ":1", odd + " is not read", "a section without it");
+  require_known(r.card, {"ELSET", "SECTION", "DENSITY", "POISSON"}, "a section without it");
   InpSection s{upper(r.card.need("ELSET")), "", r.card.need("ELSET"), "", r.card.place("ELSET"), ""};
   s.card = r.card.name;
   DataLine l;
@@ -377,7 +367,7 @@ void read_general_section(InpReading& r) {
   s.beam = general_section(l.number(0), l.number(3), l.number(1), l.number(4));
   s.beam.I12 = -l.number(2);
   const std::string place = l.place();
-  if (r.lines.next_data(l) && !(l.empty(0) && l.empty(1) && l.empty(2))) s.n1 = Vec3(l.number(0), l.number(1), l.number(2));
+  if (r.lines.next_data(l) && !(l.empty(0) && l.empty(1) && l.empty(2))) s.n1 = l.vector(0);
   if (!r.lines.next_data(l)) throw Error(place, r.card.name + " lacks its third line", "E, G");
   DeckMaterial own;
   own.name = s.elset_name + "_section";
@@ -390,8 +380,8 @@ void read_general_section(InpReading& r) {
 
 }  // namespace
 
-std::span<const InpCard> inp_material_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_material_cards() {
+  std::vector<InpCard> cards{
       {"MATERIAL", read_material},
       {"ELASTIC", read_elastic},
       {"DENSITY", read_density},
@@ -405,16 +395,10 @@ std::span<const InpCard> inp_material_cards() {
       {"RATEDEPENDENT", read_rates},
       {"HYPERELASTIC", read_rubber},
       {"ORIENTATION", read_orientation},
-      {"CYCLICHARDENING", read_no_law},
-      {"CREEP", read_no_law},
-      {"DEFORMATIONPLASTICITY", read_no_law},
-      {"DRUCKERPRAGER", read_no_law},
-      {"MOHRCOULOMB", read_no_law},
-      {"VISCOELASTIC", read_no_law},
-      {"HYPERFOAM", read_no_law},
-      {"USERMATERIAL", read_no_law},
-      {"POTENTIAL", read_no_law},
   };
+  for (const char* name : {"CYCLICHARDENING", "CREEP", "DEFORMATIONPLASTICITY", "DRUCKERPRAGER", "MOHRCOULOMB", "VISCOELASTIC", "HYPERFOAM",
+                           "USERMATERIAL", "POTENTIAL"})
+    cards.push_back({name, read_no_law});
   return cards;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 namespace {
@@ -48,17 +49,16 @@ void make_room(const std::string& name, bool of_nodes, InpDeck& d) {
 }
 
 void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
-  const std::string system = card.has("SYSTEM") ? card.word("SYSTEM") : "R";
+  const std::string system = card.word("SYSTEM", "R");
   if (system != "R" && system != "C")
     throw Error(card.place("SYSTEM"), "*NODE in spherical axes is not read", "write the nodes in rectangular or cylindrical axes");
   InpSet* set = card.has("NSET") ? &set_of_nodes(card.need("NSET"), d) : nullptr;
-  DataLine l;
-  while (lines.next_data(l)) {
+  for (DataLine l; lines.next_data(l);) {
     auto id = l.integer(0);
     if (id < 1 || id >= (d.shift ? instance_numbers : assembly_numbers))
       throw Error(l.place(0), fmt::format("node number {} is not one", id));
     id += d.node_shift();
-    Vec3 x(l.number(1), l.number(2), l.number(3));
+    Vec3 x = l.vector(1);
     if (const double t = x[1] * std::numbers::pi / 180; system == "C") x = Vec3(x[0] * std::cos(t), x[0] * std::sin(t), x[2]);
     x = d.system_at + d.system_axes * x;
     const auto [it, fresh] = d.node.try_emplace(id, static_cast<std::int64_t>(d.X.size()));
@@ -79,9 +79,8 @@ void read_system(InpReading& r) {
   InpDeck& d = r.deck;
   d.system_at = Vec3::Zero(), d.system_axes = Mat3::Identity();
   std::vector<double> x;
-  DataLine l;
   std::string place = r.card.place();
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     place = l.place();
     for (size_t i = 0; i < l.fields.size(); ++i) x.push_back(l.number(i));
     x.resize(x.size() <= 3 ? 3 : x.size() <= 6 ? 6 : 9);
@@ -117,9 +116,8 @@ void read_elements(InpReading& r) {
   const bool pyramid = type.starts_with("C3D5");
   const size_t n = pyramid ? 5 : of_beam ? of_beam : static_cast<size_t>(info(shape).n_nodes);
   InpSet* set = card.has("ELSET") ? &set_of_cells(card.need("ELSET"), d) : nullptr;
-  DataLine l;
   std::vector<std::int64_t> row;
-  while (lines.next_data(l)) {
+  for (DataLine l; lines.next_data(l);) {
     const std::string place = l.place(0);
     const int line = l.line;
     const std::string* file = &*d.files.insert(*l.file).first;  // the lines close before the cells are resolved
@@ -136,29 +134,19 @@ void read_elements(InpReading& r) {
       in.skip(fmt::format("*ELEMENT, TYPE={}: numbers after its {} nodes", upper(card.value("TYPE")), n), l.place());
       row.resize(n + 1);
     }
-    if (d.points.contains(row[0]) || d.beams.contains(row[0]) || d.cell.contains(row[0]))
-      throw Error(place, fmt::format("element {} is given twice", row[0]), "number each element once");
+    if (d.has_element(row[0])) throw Error(place, fmt::format("element {} is given twice", row[0]), "number each element once");
     if (set) set->members.push_back(row[0]);
     if (of_beam) {
       d.beams[row[0]] = {type, row[0], {row.begin() + 1, row.end()}, place, file, line};
       continue;
     }
-    const auto add = [&](std::int64_t id, std::span<const std::int64_t> nodes) {
-      d.cell[id] = static_cast<std::int64_t>(d.shape.size());
-      d.shape.push_back(static_cast<std::uint8_t>(shape));
-      d.cell_id.push_back(id);
-      d.cell_nodes.insert(d.cell_nodes.end(), nodes.begin(), nodes.end());
-      d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
-      d.cell_line.push_back(line);
-      d.cell_file.push_back(file);
-    };
     const auto nodes = std::span<const std::int64_t>(row).subspan(1);
     if (!pyramid) {
-      add(row[0], nodes);
+      d.add_cell(row[0], shape, nodes, file, line);
       continue;
     }
     const auto halves = halves_of_pyramid(nodes);
-    add(row[0], halves[0]), add(row[0] + second_half, halves[1]);
+    d.add_cell(row[0], shape, halves[0], file, line), d.add_cell(row[0] + second_half, shape, halves[1], file, line);
     d.pyramids.insert({row[0], row[0] + second_half});
   }
 }
@@ -191,8 +179,7 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
           if (const auto c = d.cell.find(half); c != d.cell.end())
             add.insert(add.end(), d.cell_nodes.begin() + d.offset[c->second], d.cell_nodes.begin() + d.offset[c->second + 1]);
   }
-  DataLine l;
-  while (lines.next_data(l)) {
+  for (DataLine l; lines.next_data(l);) {
     if (card.has("GENERATE")) {
       if (!l.is_integer(0)) {  // CalculiX: a set name stands for itself here too
         const auto it = find(l.text(0));
@@ -200,7 +187,7 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
         add.insert(add.end(), it->second.members.begin(), it->second.members.end());
         continue;
       }
-      const auto first = l.integer(0), last = l.empty(1) ? first : l.integer(1), by = l.empty(2) ? 1 : l.integer(2);
+      const auto first = l.integer(0), last = l.integer(1, first), by = l.integer(2, 1);
       if (by < 1 || last < first || (last - first) / by > 1'000'000'000)
         throw Error(l.place(0), fmt::format("GENERATE: {}, {}, {} names no usable range", first, last, by));
       for (auto i = first; i <= last; i += by) add.push_back(i + shift);
@@ -212,8 +199,7 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
         add.push_back(l.integer(i) + shift);
         continue;
       }
-      std::string_view text = l.text(i);
-      if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
+      const std::string_view text = unquote(l.text(i));
       if (const DataLine own{l.file, l.line, {{text.substr(text.rfind('.') + 1), l.fields[i].column}}};
           text.find('.') != text.npos && own.is_integer(0)) {  // "PART-1-1.17"
         const auto qualified = d.shift_of.find(upper(text.substr(0, text.rfind('.'))));
@@ -235,34 +221,27 @@ void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   if (d.in_assembly)
     for (InpSurface& other : d.surfaces)
       if (upper(other.name) == upper(s.name) && other.name.find('.') == std::string::npos) other.name = d.instance + "." + other.name;
-  const std::string type = card.has("TYPE") ? card.word("TYPE") : "ELEMENT";
+  const std::string type = card.word("TYPE", "ELEMENT");
   s.of_nodes = type == "NODE";
   if (!s.of_nodes && type != "ELEMENT") {
     in.skip(fmt::format("*SURFACE, TYPE={}", type), card.place());
     return;
   }
-  DataLine l;
-  while (lines.next_data(l)) {
-    InpSurface::Line one{"", 0, 0, l.place()};
+  for (DataLine l; lines.next_data(l);) {
+    InpSurface::Line one{{"", 0, l.place()}};
     if (l.is_integer(0))
       one.id = l.integer(0) + (s.of_nodes ? d.node_shift() : d.shift);
-    else {
-      std::string_view text = l.text(0);
-      if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
-      one.target = upper(d.prefix) + upper(text);
-    }
+    else
+      one.target = upper(d.prefix) + upper(unquote(l.text(0)));
     const std::string face = upper(l.text(1));
-    if (!s.of_nodes && !face.empty()) {
-      if (face == "SPOS" || face == "SNEG") {
-        one.face = face == "SPOS" ? 2 : 1, one.of_shell = true;
-        s.lines.push_back(one);
-        continue;
-      }
-      if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '6') {
-        in.skip(fmt::format("*SURFACE: face {}", face), l.place());
-        continue;
-      }
+    const bool by_face = !s.of_nodes && !face.empty();
+    if (by_face && (face == "SPOS" || face == "SNEG"))
+      one.face = face == "SPOS" ? 2 : 1, one.of_shell = true;
+    else if (by_face && face.size() == 2 && face[0] == 'S' && face[1] >= '1' && face[1] <= '6')
       one.face = face[1] - '0';
+    else if (by_face) {
+      in.skip(fmt::format("*SURFACE: face {}", face), l.place());
+      continue;
     }
     s.lines.push_back(one);
   }
@@ -270,6 +249,16 @@ void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
 }
 
 }  // namespace
+
+void InpDeck::add_cell(std::int64_t id, Shape of, std::span<const std::int64_t> nodes, const std::string* at_file, int at_line) {
+  cell[id] = static_cast<std::int64_t>(shape.size());
+  shape.push_back(static_cast<std::uint8_t>(of));
+  cell_id.push_back(id);
+  cell_nodes.insert(cell_nodes.end(), nodes.begin(), nodes.end());
+  offset.push_back(static_cast<std::int64_t>(cell_nodes.size()));
+  cell_line.push_back(at_line);
+  cell_file.push_back(at_file);
+}
 
 InpSet& set_of_cells(const std::string& name, InpDeck& d) {
   make_room(name, false, d);
@@ -349,17 +338,15 @@ int inp_facet(Shape shape, int face) {
   const auto& faces = known->second;
   if (face < 1 || face > static_cast<int>(faces.size())) return -1;
   for (size_t f = 0; f < s.facets.size(); ++f) {
-    std::vector<int> corners;
-    for (const int a : s.facets[f])
-      if (a < s.n_corners) corners.push_back(a);
-    std::sort(corners.begin(), corners.end());
+    auto corners = facet_corners(s, f);
+    std::ranges::sort(corners);
     if (corners == faces[face - 1]) return static_cast<int>(f);
   }
   return -1;
 }
 
-std::span<const InpCard> inp_mesh_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_mesh_cards() {
+  return {
       {"NODE", [](InpReading& r) { read_nodes(r.card, r.lines, r.deck, r.in); }},
       {"SYSTEM", read_system},
       {"ELEMENT", read_elements},
@@ -367,7 +354,6 @@ std::span<const InpCard> inp_mesh_cards() {
       {"ELSET", [](InpReading& r) { read_set(r.card, "ELSET", r.lines, r.deck.elset, r.deck.elset_order, r.deck); }},
       {"SURFACE", [](InpReading& r) { read_surface(r.card, r.lines, r.deck, r.in); }},
   };
-  return cards;
 }
 
 }  // namespace hilo

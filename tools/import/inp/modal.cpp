@@ -8,15 +8,14 @@
 
 #include "base/param.hpp"
 #include "import/inp/card.hpp"
-#include "import/inp/steps.hpp"
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 namespace {
 
 /// Increment and end of *MODAL DYNAMIC, or the band of *STEADY STATE DYNAMICS.
 void read_modal(InpReading& r) {
-  if (r.deck.steps.empty()) r.deck.steps.emplace_back();
-  InpStep& s = r.deck.steps.back();
+  InpStep& s = step_of(r);
   s.procedure = r.card.name;
   if (r.step < 2) r.skip(r.card.name);  // of modes that another job has kept
   const bool sweep = r.card.key == "STEADYSTATEDYNAMICS";
@@ -36,8 +35,7 @@ void read_modal_damping(InpReading& r) {
   if (const auto odd = unknown_param(r.card, {"RAYLEIGH"}); !odd.empty() || r.step == 0) return r.skip(odd.empty() ? r.card.name : odd);
   InpModalDamping& m = r.deck.steps.back().damping;
   m.place = r.card.place();
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     if (rayleigh)
       m.alpha = l.number(2), m.beta = l.number(3), m.rayleigh = true;
     else
@@ -47,10 +45,6 @@ void read_modal_damping(InpReading& r) {
 
 /// A line of the second step on a component takes the place of that of the first; false where both speak of a node by different names.
 bool replace_supports(InpDeck& d) {
-  const auto nodes = [&](const InpNodal& l) {
-    const auto set = d.nset.find(l.target);
-    return l.target.empty() || set == d.nset.end() ? std::vector{l.id} : set->second.members;
-  };
   std::vector<InpNodal> lines;
   for (const InpNodal& l : d.supports) {
     std::vector<InpNodal> left{l};
@@ -63,7 +57,7 @@ bool replace_supports(InpDeck& d) {
           continue;
         }
         if (part.target != later.target || (part.target.empty() && part.id != later.id)) {
-          auto one = nodes(part), other = nodes(later);
+          auto one = numbers_in(d.nset, part), other = numbers_in(d.nset, later);
           std::ranges::sort(one), std::ranges::sort(other);
           std::vector<std::int64_t> both;
           std::ranges::set_intersection(one, other, std::back_inserter(both));
@@ -71,10 +65,7 @@ bool replace_supports(InpDeck& d) {
           parts.push_back(part);
           continue;
         }
-        InpNodal below = part, above = part;
-        below.last = later.first - 1, above.first = later.last + 1;
-        if (below.first <= below.last) parts.push_back(below);
-        if (above.first <= above.last) parts.push_back(above);
+        std::ranges::move(without(part, later.first, later.last), std::back_inserter(parts));
       }
       left = parts;
     }
@@ -148,13 +139,12 @@ void take_modal(InpDeck& d, Imported& in) {
   d.steps[0] = s;
 }
 
-std::span<const InpCard> inp_modal_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_modal_cards() {
+  return {
       {"MODALDYNAMIC", read_modal, false, true},
       {"STEADYSTATEDYNAMICS", read_modal, false, true},
       {"MODALDAMPING", read_modal_damping, false, true},
   };
-  return cards;
 }
 
 }  // namespace hilo

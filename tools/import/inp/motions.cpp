@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
-#include "import/inp/steps.hpp"
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 namespace {
@@ -54,18 +54,14 @@ void read_base_motion(InpReading& r) {
   if (const auto odd = unknown_param(card, {"DOF", "AMPLITUDE", "TYPE", "SCALE"}); !odd.empty()) return r.skip(odd);
   if (r.step == 0) throw Error(card.place() + ":1", "*BASE MOTION outside a *STEP");
   if (r.step > 1) r.deck.steps.back().not_read = card.name;
-  const auto number = [&](const char* key) {
-    const std::string text = card.need(key);
-    return DataLine{card.file, card.line, {{text, card.params.at(key).column}}}.number(0);
-  };
   InpBaseMotion m;
-  const double dof = number("DOF");
+  const double dof = card.number("DOF");
   if (!(dof == 1 || dof == 2 || dof == 3 || dof == 4 || dof == 5 || dof == 6))
     throw Error(card.place("DOF"), fmt::format("*BASE MOTION, DOF={}", card.value("DOF")), "1 to 6");
   m.component = static_cast<int>(dof);
   m.amplitude = card.word("AMPLITUDE"), m.step = r.step, m.place = card.place();
-  if (card.has("SCALE")) m.scale = number("SCALE");
-  const std::string type = card.has("TYPE") ? card.word("TYPE") : "ACCELERATION";
+  if (card.has("SCALE")) m.scale = card.number("SCALE");
+  const std::string type = card.word("TYPE", "ACCELERATION");
   if (type != "DISPLACEMENT" && type != "VELOCITY" && type != "ACCELERATION")
     throw Error(card.place("TYPE"), "*BASE MOTION, TYPE=" + type, "DISPLACEMENT, VELOCITY or ACCELERATION");
   m.rate = type == "DISPLACEMENT" ? 0 : type == "VELOCITY" ? 1 : 2;
@@ -73,79 +69,64 @@ void read_base_motion(InpReading& r) {
 }
 
 /// The components of a line that others hold go out of it; those of the base move.
-void move_base(InpDeck& d, Imported& in) {
-  for (const InpBaseMotion& m : d.base_motions) {
-    const std::string procedure = d.steps[static_cast<size_t>(m.step) - 1].procedure;
-    if (m.step > 1) continue;  // told with its step
-    if (procedure != "*DYNAMIC" || m.component > 3) {
-      in.skip(procedure != "*DYNAMIC" ? fmt::format("*BASE MOTION of {}", procedure.empty() ? "a step without a procedure" : procedure)
-                                      : fmt::format("*BASE MOTION on degree of freedom {}", m.component),
-              m.place);
+void move_base(InpDeck& d, const InpBaseMotion& m, Imported& in) {
+  const std::string procedure = d.steps[static_cast<size_t>(m.step) - 1].procedure;
+  if (m.step > 1) return;  // told with its step
+  if (procedure != "*DYNAMIC")
+    return in.skip(fmt::format("*BASE MOTION of {}", procedure.empty() ? "a step without a procedure" : procedure), m.place);
+  if (m.component > 3) return in.skip(fmt::format("*BASE MOTION on degree of freedom {}", m.component), m.place);
+  std::vector<InpNodal> lines;
+  bool any = false;
+  for (const InpNodal& l : d.supports) {
+    if (l.step > m.step || l.value != 0 || m.component < l.first || m.component > l.last) {
+      lines.push_back(l);
       continue;
     }
-    std::vector<InpNodal> lines;
-    bool any = false;
-    for (const InpNodal& l : d.supports) {
-      if (l.step > m.step || l.value != 0 || m.component < l.first || m.component > l.last) {
-        lines.push_back(l);
-        continue;
-      }
-      any = true;
-      InpNodal part = l;
-      part.last = m.component - 1;
-      if (part.first <= part.last) lines.push_back(part);
-      part = l, part.first = m.component + 1;
-      if (part.first <= part.last) lines.push_back(part);
-      part = l, part.first = part.last = m.component;
-      part.value = m.scale, part.amplitude = m.amplitude, part.rate = m.rate, part.place = m.place, part.step = m.step;
-      lines.push_back(part);
-    }
-    if (!any) in.skip(fmt::format("*BASE MOTION on degree of freedom {}, which nothing holds", m.component), m.place);
-    d.supports = std::move(lines);
+    any = true;
+    std::ranges::move(without(l, m.component, m.component), std::back_inserter(lines));
+    InpNodal part = l;
+    part.first = part.last = m.component;
+    part.value = m.scale, part.amplitude = m.amplitude, part.rate = m.rate, part.place = m.place, part.step = m.step;
+    lines.push_back(part);
   }
+  if (!any) in.skip(fmt::format("*BASE MOTION on degree of freedom {}, which nothing holds", m.component), m.place);
+  d.supports = std::move(lines);
+}
+
+/// A velocity or acceleration becomes a displacement, `known` by amplitude and rate; false where it cannot, which is told.
+bool integrate(InpDeck& d, InpNodal& l, std::map<std::pair<std::string, int>, std::string>& known, Imported& in) {
+  if (l.rate == 0 || l.value == 0) return true;  // no velocity, no acceleration: it stays
+  const char* type = l.rate == 1 ? "VELOCITY" : "ACCELERATION";
+  const InpStep* step = l.step > 0 ? &d.steps[static_cast<size_t>(l.step) - 1] : nullptr;
+  const auto a = d.amplitudes.find(l.amplitude);
+  if (!step || step->procedure != "*DYNAMIC")
+    return in.skip(fmt::format("*BOUNDARY, TYPE={}, of {}", type, step ? step->procedure : "no step"), l.place), false;
+  if (!l.amplitude.empty() && (a == d.amplitudes.end() || a->second.t.empty()))
+    return in.skip(fmt::format("*BOUNDARY, TYPE={}, with *AMPLITUDE {}", type, l.amplitude), l.place), false;
+  std::string& name = known[{l.amplitude, l.rate}];
+  if (name.empty()) {
+    InpAmplitude of = integral(l.amplitude.empty() ? InpAmplitude{"constant", {0}, {1}} : a->second, l.rate, step->period());
+    const std::string wish =
+        fmt::format("{}_{}", l.amplitude.empty() ? "constant" : a->second.name, l.rate == 1 ? "integral" : "integral_2");
+    for (int i = 1; of.name.empty() || d.amplitudes.contains(upper(of.name)); ++i) of.name = i == 1 ? wish : fmt::format("{}_{}", wish, i);
+    name = upper(of.name);
+    d.amplitudes[name] = std::move(of);
+  }
+  l.amplitude = name;
+  return true;
 }
 
 }  // namespace
 
 void find_motions(InpDeck& d, Imported& in) {
-  move_base(d, in);
-  std::map<std::pair<std::string, int>, std::string> known;  // amplitude and rate -> its integral
+  for (const InpBaseMotion& m : d.base_motions) move_base(d, m, in);
+  std::map<std::pair<std::string, int>, std::string> known;
   std::vector<InpNodal> lines;
-  for (InpNodal& l : d.supports) {
-    const char* type = l.rate == 1 ? "VELOCITY" : "ACCELERATION";
-    if (l.rate == 0 || l.value == 0) {  // no velocity, no acceleration: it stays
-      lines.push_back(l);
-      continue;
-    }
-    const InpStep* step = l.step > 0 ? &d.steps[static_cast<size_t>(l.step) - 1] : nullptr;
-    const auto a = d.amplitudes.find(l.amplitude);
-    if (!step || step->procedure != "*DYNAMIC") {
-      in.skip(fmt::format("*BOUNDARY, TYPE={}, of {}", type, step ? step->procedure : "no step"), l.place);
-      continue;
-    }
-    if (!l.amplitude.empty() && (a == d.amplitudes.end() || a->second.t.empty())) {
-      in.skip(fmt::format("*BOUNDARY, TYPE={}, with *AMPLITUDE {}", type, l.amplitude), l.place);
-      continue;
-    }
-    std::string& name = known[{l.amplitude, l.rate}];
-    if (name.empty()) {
-      InpAmplitude of = integral(l.amplitude.empty() ? InpAmplitude{"constant", {0}, {1}} : a->second, l.rate, step->period());
-      const std::string wish =
-          fmt::format("{}_{}", l.amplitude.empty() ? "constant" : a->second.name, l.rate == 1 ? "integral" : "integral_2");
-      for (int i = 1; of.name.empty() || d.amplitudes.contains(upper(of.name)); ++i)
-        of.name = i == 1 ? wish : fmt::format("{}_{}", wish, i);
-      name = upper(of.name);
-      d.amplitudes[name] = std::move(of);
-    }
-    l.amplitude = name;
-    lines.push_back(l);
-  }
+  for (InpNodal l : d.supports)
+    if (integrate(d, l, known, in)) lines.push_back(l);
   d.supports = std::move(lines);
 }
 
-std::span<const InpCard> inp_motion_cards() {
-  static constexpr InpCard cards[] = {{"BASEMOTION", read_base_motion, false, true}};
-  return cards;
-}
+std::vector<InpCard> inp_motion_cards() { return {{"BASEMOTION", read_base_motion, false, true}}; }
 
 }  // namespace hilo

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "base/error.hpp"
@@ -41,31 +42,30 @@ class Expression {
     blanks();
     return true;
   }
+  template <class F>
+  static InpParameter both(const InpParameter& x, const InpParameter& y, F f) {
+    return {f(x.value, y.value), x.whole && y.whole};
+  }
   InpParameter sum() {
     InpParameter x = product();
     for (;;)
-      if (take("+")) {
-        const auto y = product();
-        x = {x.value + y.value, x.whole && y.whole};
-      } else if (take("-")) {
-        const auto y = product();
-        x = {x.value - y.value, x.whole && y.whole};
-      } else {
+      if (take("+"))
+        x = both(x, product(), std::plus<>());
+      else if (take("-"))
+        x = both(x, product(), std::minus<>());
+      else
         return x;
-      }
   }
   InpParameter product() {
     InpParameter x = sign();
     for (;;)
       if (!text_.substr(at_).starts_with("**") && take("*")) {
-        const auto y = sign();
-        x = {x.value * y.value, x.whole && y.whole};
+        x = both(x, sign(), std::multiplies<>());
       } else if (take("/")) {
         const auto y = sign();
         if (y.value == 0) fail("a division by zero");
-        const bool whole = x.whole && y.whole;
-        if (whole && std::fmod(x.value, y.value) != 0) fail("a division of whole numbers with a rest");
-        x = {x.value / y.value, whole};
+        if (x.whole && y.whole && std::fmod(x.value, y.value) != 0) fail("a division of whole numbers with a rest");
+        x = both(x, y, std::divides<>());
       } else {
         return x;
       }

@@ -7,18 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "import/inp/ties.hpp"
-
 namespace hilo {
 
 InpScene::InpScene(const InpDeck& d, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
                    const std::map<std::string, std::string>& surface, const ImportOptions& o)
     : d_(d), in_(in), names_(names), node_set_(node_set), surface_(surface), o_(o), turned_(turned_nodes(d, in.mesh)) {
   for (const InpTransform& t : d.transformed)
-    if (const auto set = d.nset.find(t.target); set != d.nset.end())
-      own_axes_.insert(set->second.members.begin(), set->second.members.end());
-    else if (t.target.empty())
-      own_axes_.insert(t.id);
+    for (const auto id : numbers_in(d.nset, t)) own_axes_.insert(id);
   for (const auto& [turns, reference] : d.turns_of)
     if (own_axes_.contains(turns)) own_axes_.insert(reference);
   for (const auto& [id, b] : d.beams) of_beams_.insert(b.nodes.begin(), b.nodes.end());
@@ -79,10 +74,7 @@ void InpScene::materials() {
   const Mesh& m = in_.mesh;
   std::vector<SceneWriter> regions(m.region_name.size());
   std::vector<int> seen(m.region_name.size(), 0);
-  std::vector<const InpSection*> of_cell(m.shape.size(), nullptr);  // the last section that has it, as in region_materials()
-  for (const auto& s : d_.sections)
-    for (const auto id : d_.elset.at(s.elset).members)
-      if (const auto c = d_.cell.find(id); c != d_.cell.end()) of_cell[c->second] = &s;
+  const auto of_cell = section_of_cells(d_);
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
     const auto r = m.region[c];
     if (!of_cell[c] || seen[r]++) continue;

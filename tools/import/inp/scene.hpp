@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "import/inp/groups.hpp"
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 
@@ -49,7 +49,6 @@ class InpScene {
   void contacts();
   // scene_loads.cpp
   void gravity();
-  std::vector<std::int64_t> elements_of(const InpDistributed& p) const;
   void centrifugal();
   void load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, std::initializer_list<SceneKey> keys);
   void forces();

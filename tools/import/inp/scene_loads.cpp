@@ -6,9 +6,7 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "import/inp/equations.hpp"
 #include "import/inp/scene.hpp"
-#include "import/inp/ties.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 
@@ -26,8 +24,8 @@ void InpScene::gravity() {
     any = true, in_time = in_time || !p.amplitude.empty();
     const Vec3 more = p.value * p.direction;
     if (!p.target.empty() || !beside.contains(p.id))
-      for (const auto c : inp_cells(d_, p.target, p.id, p.place)) g[static_cast<size_t>(c)] += more;
-    for (const auto id : elements_of(p))
+      for (const auto c : inp_cells(d_, p)) g[static_cast<size_t>(c)] += more;
+    for (const auto id : numbers_in(d_.elset, p))
       if (const auto one = beside.find(id); one != beside.end()) one->second += more;
   }
   const size_t n_cells = g.size();
@@ -40,23 +38,16 @@ void InpScene::gravity() {
   // what weighs in parts, or by a history, takes a load for each
   for (const auto& p : d_.distributed) {
     if (p.face != -1) continue;
-    if (const auto ids = elements_of(p); std::ranges::any_of(ids, [&](std::int64_t id) { return beside.contains(id); }))
+    if (const auto ids = numbers_in(d_.elset, p); std::ranges::any_of(ids, [&](std::int64_t id) { return beside.contains(id); }))
       in_.skip("*DLOAD GRAV on a part of the model, of masses and beams", p.place);
     if (n_cells > 0) load_of_mass(p, "acceleration", "gravity", {{"acceleration", p.value * p.direction * si("m/s^2")}});
   }
 }
 
-/// Numbers of the elements of a line.
-std::vector<std::int64_t> InpScene::elements_of(const InpDistributed& p) const {
-  if (p.target.empty()) return {p.id};
-  const auto set = d_.elset.find(p.target);
-  return set == d_.elset.end() ? std::vector<std::int64_t>{} : set->second.members;
-}
-
 void InpScene::centrifugal() {
   for (const auto& p : d_.distributed) {
     if (p.face != -2 || p.value == 0) continue;
-    if (const auto ids = elements_of(p); std::ranges::any_of(ids, [&](std::int64_t id) { return d_.beams.contains(id); }))
+    if (const auto ids = numbers_in(d_.elset, p); std::ranges::any_of(ids, [&](std::int64_t id) { return d_.beams.contains(id); }))
       in_.skip("*DLOAD CENTRIF on beams", p.place);
     load_of_mass(p, "centrifugal", "centrifugal", {{"at", point(p.at)}, {"axis", p.direction}, {"speed", std::sqrt(p.value) / si("s")}});
   }
@@ -64,7 +55,7 @@ void InpScene::centrifugal() {
 
 /// On the regions that a line has whole, and on a set of the other cells.
 void InpScene::load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, std::initializer_list<SceneKey> keys) {
-  auto cells = inp_cells(d_, p.target, p.id, p.place);
+  auto cells = inp_cells(d_, p);
   const auto past = cells.empty() ? std::nullopt : history(p.amplitude, "*DLOAD", p.place);
   if (!past) return;
   const Mesh& m = in_.mesh;
@@ -104,7 +95,7 @@ std::map<size_t, Rows> InpScene::by_number_of_nodes(const Rows& nodes) {
   std::map<size_t, Rows> out;
   for (const auto a : nodes) {
     size_t n = 1;
-    if (in_.sheets && !in_.sheets->at(a).empty()) n = in_.nodes_counted[a] = count_nodes(in_.sheets->at(a), of_solids_.contains(a));
+    if (const auto& sheets = sheets_at(in_, a); !sheets.empty()) n = in_.nodes_counted[a] = count_nodes(sheets, of_solids_.contains(a));
     out[n].push_back(a);
   }
   return out;
@@ -151,13 +142,9 @@ void InpScene::forces_of_ties() {
         scene_.add_unique({"load", "force"}, name, s.place,
                           {{"on", name}, {"force", s.F * si("N")}, {"at", point(d_.bodies.at(key.first).X)}, {"history", *past}});
       Vec3 M = s.M;
-      if (const auto a = d_.node.find(key.first); a != d_.node.end() && in_.sheets && !in_.sheets->at(a->second).empty() &&
-                                                  !of_beams_.contains(key.first) && is_flat(in_.sheets->at(a->second))) {
-        const Vec3& n = in_.sheets->at(a->second).front().normal;
-        if (std::abs(M.dot(n)) > 1e-6 * M.norm())
+      if (is_of_pairs(d_, in_, key.first) && !of_beams_.contains(key.first))
+        if (const auto& sheets = sheets_at(in_, d_.node.at(key.first)); is_flat(sheets) && drop_drilling(sheets, M))
           in_.skip("*CLOAD: a moment about the normal of a shell, which does not resist it", s.place);
-        M -= n * n.dot(M);
-      }
       if (M.norm() > 0)
         scene_.add_unique({"load", "torque"}, name + "_torque", s.place, {{"on", name}, {"torque", M * si("N m")}, {"history", *past}});
       continue;
@@ -189,7 +176,7 @@ void InpScene::line_loads() {
     const auto past = history(p.amplitude, "*DLOAD", p.place);
     if (!past) continue;
     std::int64_t others = 0;
-    for (const auto id : elements_of(p)) {
+    for (const auto id : numbers_in(d_.elset, p)) {
       const auto b = d_.beams.find(id);
       if (b == d_.beams.end()) {
         ++others;
@@ -252,10 +239,9 @@ void InpScene::pressures() {
         groups.push_back({"", s->second, p.amplitude, p.place, p.value, {}});
       continue;
     }
-    const auto cells = inp_cells(d_, p.target, p.id, p.place);
-    const auto set = d_.elset.find(p.target);
+    const auto cells = inp_cells(d_, p);
     const bool has_beams =
-        set != d_.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d_.beams.contains(id); });
+        !p.target.empty() && std::ranges::any_of(numbers_in(d_.elset, p), [&](auto id) { return d_.beams.contains(id); });
     if (cells.empty() || has_beams) in_.skip("*DLOAD on elements that are no cells", p.place);
     const std::string of_set = p.target.empty() ? std::string() : d_.elset.at(p.target).name + "_P";
     const auto is_shell = [&](auto c) { return info(in_.mesh.shape[static_cast<size_t>(c)]).dimension == 2; };
@@ -305,9 +291,8 @@ void InpScene::pressures() {
 }
 
 void InpScene::velocities() {
-  for (const auto& g : nodal_groups(d_, d_.velocities, "*INITIAL CONDITIONS, TYPE=VELOCITY", false, turned_, in_)) {
+  for (const auto& g : nodal_groups(d_, d_.velocities, "*INITIAL CONDITIONS, TYPE=VELOCITY", false, turned_, in_))
     scene_.add("initial", "", g.place,
                {{"on", std::vector{set_of(g.target, g.nodes, "velocity", false)}}, {"velocity", g.value * si("m/s")}});
-  }
 }
 }  // namespace hilo

@@ -7,9 +7,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "import/inp/equations.hpp"
 #include "import/inp/scene.hpp"
-#include "import/inp/ties.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 
@@ -29,7 +27,7 @@ std::string InpScene::why_no_end(const InpMpc& mpc, std::int64_t id) const {
   const auto row = d_.node.find(id);
   const bool body = d_.bodies.contains(id), of_cells = row != d_.node.end();
   if (!body && !of_cells && !d_.loose.contains(id)) throw Error(mpc.place, fmt::format("*MPC, {}: no node {}", mpc.kind, id));
-  if (of_cells && in_.sheets && !in_.sheets->at(row->second).empty()) return "of nodes of shells";
+  if (is_of_pairs(d_, in_, id)) return "of nodes of shells";
   if (body && mpc.kind == "BEAM") return "of a node that may turn, which Abaqus and CalculiX read differently";
   return body || of_cells ? "" : "of a node of no cell";
 }

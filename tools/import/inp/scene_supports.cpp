@@ -5,9 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "base/error.hpp"
-#include "import/inp/equations.hpp"
 #include "import/inp/scene.hpp"
-#include "import/inp/ties.hpp"
 #include "import/links.hpp"
 
 namespace hilo {
@@ -109,10 +107,8 @@ Mat3 InpScene::axes_of(std::int64_t id) const {
   for (const auto& [turns, reference] : d_.turns_of)
     if (reference == id) return Mat3::Zero();  // its turns may have other axes than its displacements
   const InpTransform* of = nullptr;
-  for (const InpTransform& t : d_.transformed) {
-    const auto set = d_.nset.find(t.target);
-    if (t.target.empty() ? t.id == id : set != d_.nset.end() && std::ranges::count(set->second.members, id)) of = &t;
-  }
+  for (const InpTransform& t : d_.transformed)
+    if (std::ranges::count(numbers_in(d_.nset, t), id)) of = &t;
   return of ? of->axes(d_.bodies.at(id).X) : Mat3(Mat3::Zero());
 }
 

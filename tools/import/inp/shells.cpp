@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "import/inp/equations.hpp"
-#include "import/inp/groups.hpp"
+#include "import/inp/passes.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 
@@ -16,13 +15,13 @@ void find_bodies_of_shells(InpDeck& d, Imported& in) {
     d.bodies.try_emplace(in.mesh.node_id[static_cast<size_t>(a)], InpBody{in.mesh.X[static_cast<size_t>(a)], place, {}});
   };
   for (const InpThickness& t : d.thicknesses)
-    for (const auto a : inp_nodes(d, t.node.name, t.node.id, t.node.place))
+    for (const auto a : inp_nodes(d, t))
       if (in.sheets->at(a).empty())
-        in.skip("*NODAL THICKNESS of nodes of no shell", t.node.place);
+        in.skip("*NODAL THICKNESS of nodes of no shell", t.place);
       else
         in.thickness_at[a] = t.value;
   const auto of_shells = [&](const InpNodal& l) {
-    auto rows = inp_nodes(d, l.target, l.id, l.place);
+    auto rows = inp_nodes(d, l);
     std::erase_if(rows, [&](std::int64_t a) { return in.sheets->at(a).empty(); });
     return rows;
   };
@@ -53,7 +52,7 @@ void find_bodies_of_shells(InpDeck& d, Imported& in) {
     for (const auto a : of_shells(l))
       if (l.last > 3 || std::ranges::any_of(in.sheets->at(a), [](const Sheets::Part& p) { return p.offset != 0; })) make(a, l.place);
   const auto by_number = [&](std::int64_t id, const std::string& place) {
-    if (const auto a = d.node.find(id); a != d.node.end() && !in.sheets->at(a->second).empty()) make(a->second, place);
+    if (is_of_pairs(d, in, id)) make(d.node.at(id), place);
   };
   for (const auto& [id, p] : d.points)
     for (const auto n : p.nodes)

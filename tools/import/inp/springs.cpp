@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A force along one component of a node has a fixed direction.  A body of no mass slides along it (prismatic joint) and the node stays in
 // its plane (in-plane joint), so that the slide is the component.  Two of them, the second on the first, make a difference of components.
-#include "import/inp/springs.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "import/inp/passes.hpp"
 #include "import/links.hpp"
 
 namespace hilo {
@@ -57,15 +56,7 @@ class PointSpring {
           damps() ? "force, velocity" : "force, extension");
   }
 
-  std::string unique(std::string wish) const {
-    const auto taken = [&] {
-      const std::string key = upper(wish);
-      return d_.nset.contains(key) || d_.elset.contains(key) ||
-             std::ranges::any_of(d_.surfaces, [&](const InpSurface& s) { return upper(s.name) == key; });
-    };
-    while (taken()) wish += "_body";
-    return wish;
-  }
+  std::string unique(const std::string& wish) const { return free_body_name(d_, wish); }
 
   /// A body of no mass that slides along the axis on `on`, and with the component of an end.
   void slider(const std::string& name, const std::string& on, const InpSpringEnd& e) const {

@@ -41,13 +41,11 @@ void place_instance(InpReading& r) {
   DataLine l;
   if (!r.lines.next_data(l)) return;
   InpDeck::Placed& p = r.deck.placed;
-  p.by = Vec3(l.number(0), l.number(1), l.number(2));
-  if (l.fields.size() > 3 || !r.lines.next_data(l)) {
-    if (l.fields.size() > 3) throw Error(l.place(3), "*INSTANCE: three numbers move it, the next line turns it");
-    return;
-  }
-  p.at = Vec3(l.number(0), l.number(1), l.number(2));
-  const Vec3 axis = Vec3(l.number(3), l.number(4), l.number(5)) - p.at;
+  p.by = l.vector(0);
+  if (l.fields.size() > 3) throw Error(l.place(3), "*INSTANCE: three numbers move it, the next line turns it");
+  if (!r.lines.next_data(l)) return;
+  p.at = l.vector(0);
+  const Vec3 axis = l.vector(3) - p.at;
   const double angle = l.number(6) * std::numbers::pi / 180;
   if (!(axis.norm() > 0)) throw Error(l.place(3), "*INSTANCE: the two points of its axis are one");
   p.turn = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
@@ -133,12 +131,6 @@ void read_step(InpReading& r) {
   if (r.card.has("AMPLITUDE")) s.ramps = r.card.word("AMPLITUDE") != "STEP", s.ramps_said = true;
 }
 
-/// The step at hand; a procedure may stand without one.
-InpStep& step_of(InpReading& r) {
-  if (r.deck.steps.empty()) r.deck.steps.emplace_back();
-  return r.deck.steps.back();
-}
-
 /// *STATIC, *DYNAMIC and *FREQUENCY become scene lines.
 void read_procedure(InpReading& r) {
   InpStep& s = step_of(r);
@@ -149,23 +141,16 @@ void read_procedure(InpReading& r) {
   s.direct = r.card.has("DIRECT") || r.card.has("EXPLICIT");
   r.card.find("SOLVER");  // of no effect here
 }
-/// How many modes; a band of frequencies is not asked for.
-void read_frequency(InpReading& r) {
-  step_of(r).procedure = r.card.name;
-  for (const char* of_no_effect : {"SOLVER", "STORAGE", "EIGENSOLVER", "NORMALIZATION"}) r.card.find(of_no_effect);
-  DataLine l;
-  if (!r.lines.next_data(l)) return;
-  step_of(r).n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
-  if (l.number(3) != 0) r.in.skip("*FREQUENCY: its fourth number (it scales masses, or is a shift)", l.place(3));
-  l.ignore_rest();
-}
-/// How many shapes; the accuracy of the search is ours.
-void read_buckle(InpReading& r) {
+/// How many modes or shapes; a band of frequencies is not asked for, and the accuracy of the search is ours.
+void read_modes(InpReading& r) {
+  const bool frequency = r.card.key == "FREQUENCY";
   step_of(r).procedure = r.card.name;
   for (const char* of_no_effect : {"SOLVER", "EIGENSOLVER"}) r.card.find(of_no_effect);
+  if (frequency) r.card.find("STORAGE"), r.card.find("NORMALIZATION");
   DataLine l;
   if (!r.lines.next_data(l)) return;
   step_of(r).n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
+  if (frequency && l.number(3) != 0) r.in.skip("*FREQUENCY: its fourth number (it scales masses, or is a shift)", l.place(3));
   l.ignore_rest();
 }
 void other_procedure(InpReading& r) {
@@ -178,8 +163,13 @@ void nothing(InpReading&) {}
 
 }  // namespace
 
-std::span<const InpCard> inp_step_cards() {
-  static constexpr InpCard cards[] = {
+InpStep& step_of(InpReading& r) {
+  if (r.deck.steps.empty()) r.deck.steps.emplace_back();
+  return r.deck.steps.back();
+}
+
+std::vector<InpCard> inp_step_cards() {
+  std::vector<InpCard> cards{
       {"HEADING", read_heading},
       {"PARAMETER", read_parameter},
       {"PART", read_part},
@@ -192,25 +182,13 @@ std::span<const InpCard> inp_step_cards() {
       {"ENDSTEP", nothing},
       {"STATIC", read_procedure, false, true},
       {"DYNAMIC", read_procedure, false, true},
-      {"FREQUENCY", read_frequency, false, true},
-      {"COMPLEXFREQUENCY", other_procedure, false, true},
-      {"BUCKLE", read_buckle, false, true},
-      {"HEATTRANSFER", other_procedure, false, true},
-      {"VISCO", other_procedure, false, true},
-      {"COUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},
-      {"UNCOUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},
-      {"CFD", other_procedure, false, true},
-      {"ELECTROMAGNETICS", other_procedure, false, true},
-      {"SENSITIVITY", other_procedure, false, true},
-      {"GREEN", other_procedure, false, true},
-      {"NOANALYSIS", other_procedure, false, true},
-      {"SUBSTRUCTUREGENERATE", other_procedure, false, true},
-      {"GEOSTATIC", other_procedure, false, true},
-      {"RANDOMRESPONSE", other_procedure, false, true},
-      {"CRACKPROPAGATION", other_procedure, false, true},
-      {"ROBUSTDESIGN", other_procedure, false, true},
-      {"FEASIBLEDIRECTION", other_procedure, false, true},
+      {"FREQUENCY", read_modes, false, true},
+      {"BUCKLE", read_modes, false, true},
   };
+  for (const char* name : {"COMPLEXFREQUENCY", "HEATTRANSFER", "VISCO", "COUPLEDTEMPERATURE-DISPLACEMENT",
+                           "UNCOUPLEDTEMPERATURE-DISPLACEMENT", "CFD", "ELECTROMAGNETICS", "SENSITIVITY", "GREEN", "NOANALYSIS",
+                           "SUBSTRUCTUREGENERATE", "GEOSTATIC", "RANDOMRESPONSE", "CRACKPROPAGATION", "ROBUSTDESIGN", "FEASIBLEDIRECTION"})
+    cards.push_back({name, other_procedure, false, true});
   return cards;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A load of a step stays in the next ones until it is given anew (OP=MOD) or all of its kind are (OP=NEW).  Without an amplitude it goes
 // in static steps from the value it had to its own, over the step, and has its own at once in dynamic ones [Abaqus, CalculiX].
-#include "import/inp/steps.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+
+#include "import/inp/passes.hpp"
 
 namespace hilo {
 namespace {
@@ -42,11 +42,8 @@ class Joiner {
   }
 
   InpPlan plan() {
-    InpPlan p;
-    const auto& last = d_.steps[n_ - 1];
-    p.procedure = last.procedure, p.n_modes = last.n_modes, p.alpha = last.alpha, p.beta = last.beta, p.ratio = last.ratio,
-    p.modal = last.modal, p.from_equilibrium = first_ > 0;
-    p.direct = true;
+    InpPlan p{d_.steps[n_ - 1]};
+    p.increment = p.end = 0, p.direct = true, p.from_equilibrium = first_ > 0;
     for (size_t k = first_; k < n_; ++k) {
       const InpStep& s = d_.steps[k];
       p.end += s.period();
@@ -55,83 +52,62 @@ class Joiner {
       p.direct = p.direct && s.direct;
     }
     p.steps = static_cast<int>(n_ - std::min(first_, n_));
-    d_.supports = joined(d_.supports, &InpStep::new_supports, true);
-    d_.forces = joined(d_.forces, &InpStep::new_forces, false);
-    d_.distributed = joined_distributed();
+    d_.supports = joined(apart(d_.supports), &InpStep::new_supports, true);
+    d_.forces = joined(apart(d_.forces), &InpStep::new_forces, false);
+    d_.distributed = joined(d_.distributed, &InpStep::new_distributed, false);
     return p;
   }
 
  private:
   static size_t index(int step) { return static_cast<size_t>(std::max(step, 1) - 1); }
 
-  std::vector<std::int64_t> nodes_of(const std::string& target, std::int64_t id) const {
-    if (target.empty()) return {id};
-    const auto set = d_.nset.find(target);
-    return set == d_.nset.end() ? std::vector<std::int64_t>{} : set->second.members;
-  }
-
-  /// Later lines may speak of the nodes of other lines under another name: then each node has lines of its own.
+  /// A line for each component.  Later lines may speak of the nodes of other lines under another name: then each node has lines of its own.
   std::vector<InpNodal> apart(const std::vector<InpNodal>& lines) const {
     std::map<std::pair<std::int64_t, int>, std::set<std::pair<std::string, std::int64_t>>> names;  // of node and component
     bool overlap = false;
     for (const InpNodal& l : lines)
-      for (const auto node : nodes_of(l.target, l.id))
+      for (const auto node : numbers_in(d_.nset, l))
         for (int k = l.first; k <= l.last; ++k) {
           auto& said = names[{node, k}];
           said.insert({l.target, l.target.empty() ? l.id : 0});
           overlap = overlap || (said.size() > 1 && l.step > 1);
         }
-    if (!overlap) return lines;
     std::vector<InpNodal> out;
     for (const InpNodal& l : lines)
-      for (const auto node : nodes_of(l.target, l.id)) out.push_back(l), out.back().target.clear(), out.back().id = node;
+      for (const auto node : overlap ? numbers_in(d_.nset, l) : std::vector{l.id})
+        for (int k = l.first; k <= l.last; ++k) {
+          InpNodal& one = out.emplace_back(l);
+          one.first = one.last = k, one.id = node;
+          if (overlap) one.target.clear();
+        }
     return out;
   }
 
-  std::vector<InpNodal> joined(const std::vector<InpNodal>& given, bool InpStep::*anew, bool support) {
-    const std::vector<InpNodal> lines = apart(given);
-    std::map<std::tuple<std::string, std::int64_t, int>, size_t> known;
-    std::vector<Item> items;
-    std::vector<int> component;
-    for (size_t i = 0; i < lines.size(); ++i) {
-      const InpNodal& l = lines[i];
-      if (index(l.step) >= n_) continue;
-      for (int k = l.first; k <= l.last; ++k) {
-        const auto [at, fresh] = known.try_emplace({l.target, l.target.empty() ? l.id : 0, k}, items.size());
-        if (fresh) items.push_back({i, std::vector<Item::Given>(n_)}), component.push_back(k);
-        give(items[at->second], l.step, l.value, l.amplitude, !support, l.place);
-      }
-    }
-    remove(items, anew);
-    std::vector<InpNodal> out;
-    for (size_t i = 0; i < items.size(); ++i) {
-      InpNodal l = lines[items[i].line];
-      l.first = l.last = component[i];
-      if (support) require_always(items[i], l);
-      if (course(items[i], l.value, l.amplitude, l.place) || support) out.push_back(l);
-    }
-    return out;
+  /// What lines have in common that speak of the same.
+  using Key = std::tuple<std::string, std::int64_t, int, std::array<double, 6>>;
+  static Key key_of(const InpNodal& l) { return {l.target, l.target.empty() ? l.id : 0, l.first, {}}; }
+  static Key key_of(const InpDistributed& l) {
+    const Vec3 e = l.direction, x = l.at;
+    return {l.target, l.target.empty() ? l.id : 0, l.face, {e.x(), e.y(), e.z(), x.x(), x.y(), x.z()}};
   }
 
-  std::vector<InpDistributed> joined_distributed() {
-    using Key = std::tuple<std::string, std::int64_t, int, std::array<double, 6>>;
+  template <class Line>
+  std::vector<Line> joined(const std::vector<Line>& lines, bool InpStep::*anew, bool support) {
     std::map<Key, size_t> known;
     std::vector<Item> items;
-    for (size_t i = 0; i < d_.distributed.size(); ++i) {
-      const InpDistributed& l = d_.distributed[i];
+    for (size_t i = 0; i < lines.size(); ++i) {
+      const Line& l = lines[i];
       if (index(l.step) >= n_) continue;
-      const Vec3 e = l.direction, x = l.at;
-      const auto [at, fresh] =
-          known.try_emplace(Key{l.target, l.target.empty() ? l.id : 0, l.face, {e.x(), e.y(), e.z(), x.x(), x.y(), x.z()}}, items.size());
+      const auto [at, fresh] = known.try_emplace(key_of(l), items.size());
       if (fresh) items.push_back({i, std::vector<Item::Given>(n_)});
-      give(items[at->second], l.step, l.value, l.amplitude, true, l.place);
+      give(items[at->second], l.step, l.value, l.amplitude, !support, l.place);
     }
-    remove(items, &InpStep::new_distributed);
-    std::vector<InpDistributed> out;
+    remove(items, anew);
+    std::vector<Line> out;
     for (const Item& item : items) {
-      InpDistributed l = d_.distributed[item.line];
-      if (!course(item, l.value, l.amplitude, l.place)) continue;
-      out.push_back(l);
+      Line l = lines[item.line];
+      if (support) require_always(item, l.place);
+      if (course(item, l.value, l.amplitude, l.place) || support) out.push_back(l);
     }
     return out;
   }
@@ -150,8 +126,8 @@ class Joiner {
   }
 
   /// What is held is held in all steps.
-  void require_always(const Item& item, const InpNodal& l) const {
-    if (!item.step[0].is) throw Cannot{"a support that is not there from the first step on", l.place};
+  void require_always(const Item& item, const std::string& place) const {
+    if (!item.step[0].is) throw Cannot{"a support that is not there from the first step on", place};
     for (size_t k = 1; k < n_; ++k)
       if (item.step[k].gone) throw Cannot{"a support that is taken away", d_.steps[k].place};
   }
@@ -256,14 +232,20 @@ size_t longest(const InpDeck& d, std::string& why) {
 
 }  // namespace
 
+std::vector<InpNodal> without(const InpNodal& line, int first, int last) {
+  std::vector<InpNodal> parts{line, line};
+  parts[0].last = std::min(line.last, first - 1), parts[1].first = std::max(line.first, last + 1);
+  std::erase_if(parts, [](const InpNodal& part) { return part.first > part.last; });
+  return parts;
+}
+
 void join_steps(InpDeck& d, Imported& in) {
   if (d.steps.empty()) return;
   std::string why, place;
   size_t n = longest(d, why);
   for (;; --n) {
     if (n == 1) {
-      const InpStep& s = d.steps[0];
-      d.plan = {s.procedure, s.increment, s.end, s.direct, s.n_modes, s.alpha, s.beta, s.ratio, s.sweep, s.place, s.modal};
+      d.plan = {d.steps[0]};
       std::erase_if(d.supports, [](const InpNodal& l) { return l.step > 1; });
       std::erase_if(d.forces, [](const InpNodal& l) { return l.step > 1; });
       std::erase_if(d.distributed, [](const InpDistributed& l) { return l.step > 1; });

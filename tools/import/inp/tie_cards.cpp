@@ -17,9 +17,15 @@ InpTarget target_in(const InpReading& r, const std::string& key) {
   const Card& card = r.card;
   const std::string value = card.need(key);
   InpTarget t{upper(value), 0, card.place(key)};
-  if (!t.name.empty() && t.name.size() < 18 && t.name.find_first_not_of("0123456789") == std::string::npos)
-    t.id = std::stoll(t.name) + r.deck.node_shift(), t.name.clear();
+  if (!t.target.empty() && t.target.size() < 18 && t.target.find_first_not_of("0123456789") == std::string::npos)
+    t.id = std::stoll(t.target) + r.deck.node_shift(), t.target.clear();
   return t;
+}
+
+/// A node or set of a field.
+InpTarget target_of_field(const InpReading& r, const DataLine& l, size_t i) {
+  const bool number = l.is_integer(i);
+  return {number ? "" : upper(r.deck.prefix) + upper(l.text(i)), number ? l.integer(i) + r.deck.node_shift() : 0, l.place(i)};
 }
 
 /// Kinematic or distributing, as the card behind it says.
@@ -39,10 +45,9 @@ void read_coupling_kind(InpReading& r) {
     throw Error(r.card.place() + ":1", fmt::format("{} follows no *COUPLING", r.card.name));
   InpTie& t = r.deck.ties.back();
   t.undecided = false, t.mean = r.card.key == "DISTRIBUTING";
-  DataLine l;
   bool any = false;
-  while (r.lines.next_data(l)) {
-    const auto first = l.integer(0), last = l.empty(1) ? first : l.integer(1);
+  for (DataLine l; r.lines.next_data(l);) {
+    const auto first = l.integer(0), last = l.integer(1, first);
     if (first < 1 || last < first || last > 6)
       throw Error(l.place(0), fmt::format("{}: no degrees of freedom {} to {}", r.card.name, first, last));
     for (auto k = first; k <= last; ++k) t.components |= 1u << (k - 1);
@@ -77,10 +82,8 @@ void read_distributing(InpReading& r) {
   InpTie t;
   t.name = r.card.name, t.place = r.card.place(), t.kind = InpTie::Of::weighted, t.mean = true, t.components = 63;
   t.reference = {upper(r.card.need("ELSET")), 0, r.card.place("ELSET")};
-  DataLine l;
-  while (r.lines.next_data(l)) {
-    InpTarget of{l.is_integer(0) ? "" : upper(r.deck.prefix) + upper(l.text(0)), l.is_integer(0) ? l.integer(0) + r.deck.node_shift() : 0,
-                 l.place(0)};
+  for (DataLine l; r.lines.next_data(l);) {
+    const InpTarget of = target_of_field(r, l, 0);
     const double w = l.number(1, 1);
     if (!(w > 0)) throw Error(l.place(1), fmt::format("{}: a weight of {:g}", t.name, w), "one above zero");
     t.weights.emplace_back(of, w);
@@ -99,17 +102,10 @@ bool tell_odd_rows(InpReading& r) {
   return true;
 }
 
-/// A node or set of a field.
-InpTarget target_of_field(const InpReading& r, const DataLine& l, size_t i) {
-  const bool number = l.is_integer(i);
-  return {number ? "" : upper(r.deck.prefix) + upper(l.text(i)), number ? l.integer(i) + r.deck.node_shift() : 0, l.place(i)};
-}
-
 /// How many terms; and then node or set, component and factor of each, on as many lines as they need.
 void read_equation(InpReading& r) {
   if (tell_odd_rows(r)) return;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     InpEquation e{{}, l.place()};
     const auto n = l.integer(0);
     if (n < 1 || n > 1'000'000) throw Error(l.place(0), fmt::format("*EQUATION of {} terms", n));
@@ -128,8 +124,7 @@ void read_mpc(InpReading& r) {
   if (tell_odd_rows(r)) return;
   InpMpc* last = nullptr;  // the one at hand, where it is read
   bool any = false;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     size_t first = 0;
     if (!l.is_integer(0)) {
       InpMpc mpc{upper(l.text(0)), {}, l.place()};
@@ -158,8 +153,7 @@ void read_tie(InpReading& r) {
     if (*end != 0 || !(tolerance >= 0)) throw Error(r.card.place("POSITIONTOLERANCE"), fmt::format("*TIE: \"{}\" is no tolerance", text));
   }
   bool any = false;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     InpPair t;
     t.name = r.card.has("NAME") ? r.card.need("NAME") : "tie", t.place = l.place();
     t.slave = upper(l.text(0)), t.master = upper(l.text(1)), t.adjust = r.card.word("ADJUST") != "NO";
@@ -177,8 +171,7 @@ void read_value(InpReading& r) {
       !odd.empty())
     return r.skip(odd);
   InpPointValue v{upper(r.card.need("ELSET")), r.card.name, r.card.place(), {}};
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     if (l.fields.empty()) continue;
     v.first.push_back(l.number(0)), v.second.push_back(l.number(1));
     v.more = false;  // of the last line
@@ -196,8 +189,7 @@ bool read_points(InpReading& r, const std::string& type) {
   const auto kind = kinds.find(type);
   if (kind == kinds.end()) return false;
   InpSet* set = r.card.has("ELSET") ? &set_of_cells(r.card.need("ELSET"), r.deck) : nullptr;
-  DataLine l;
-  while (r.lines.next_data(l)) {
+  for (DataLine l; r.lines.next_data(l);) {
     InpPoint p{type, l.integer(0) + r.deck.shift, {}, l.place()};
     for (size_t i = 0; i < kind->second; ++i) p.nodes.push_back(l.integer(1 + i) + r.deck.node_shift());
     if (r.deck.cell.contains(p.id) || !r.deck.points.try_emplace(p.id, p).second)
@@ -207,8 +199,8 @@ bool read_points(InpReading& r, const std::string& type) {
   return true;
 }
 
-std::span<const InpCard> inp_tie_cards() {
-  static constexpr InpCard cards[] = {
+std::vector<InpCard> inp_tie_cards() {
+  return {
       {"COUPLING", read_coupling},
       {"KINEMATIC", read_coupling_kind},
       {"DISTRIBUTING", read_coupling_kind},
@@ -221,7 +213,6 @@ std::span<const InpCard> inp_tie_cards() {
       {"SPRING", read_value},
       {"DASHPOT", read_value},
   };
-  return cards;
 }
 
 }  // namespace hilo

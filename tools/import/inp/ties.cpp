@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nodes of no cell that something is tied to become bodies of the scene, or the mean of the nodes they pull.
-#include "import/inp/ties.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "import/inp/equations.hpp"
-#include "import/inp/groups.hpp"
-#include "import/inp/springs.hpp"
+#include "import/inp/passes.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 
@@ -21,13 +17,10 @@ constexpr size_t most_rows = 2000;  // nodes of a coupling of some components: j
 
 /// The node that a target names.
 std::int64_t node_of(const InpDeck& d, const InpTarget& t) {
-  if (t.name.empty()) return t.id;
-  auto set = d.nset.find(t.name);
-  if (set == d.nset.end()) set = d.nset.find(unqualified(t.name));
-  if (set == d.nset.end()) throw Error(t.place, fmt::format("no node set \"{}\"", t.name), suggest_name(t.name, d.nset));
-  std::set<std::int64_t> ids(set->second.members.begin(), set->second.members.end());
-  if (ids.size() != 1) throw Error(t.place, fmt::format("node set \"{}\" holds {} nodes, one is due", t.name, ids.size()));
-  return *ids.begin();
+  auto ids = numbers_of(d, t);
+  sort_unique(ids);
+  if (ids.size() != 1) throw Error(t.place, fmt::format("node set \"{}\" holds {} nodes, one is due", t.target, ids.size()));
+  return ids.front();
 }
 
 Vec3 place_of(const InpDeck& d, std::int64_t id, const std::string& place) {
@@ -39,15 +32,15 @@ Vec3 place_of(const InpDeck& d, std::int64_t id, const std::string& place) {
 /// Numbers of the nodes of its set, or of its surface of nodes, those of no cell too.
 std::vector<std::int64_t> ids_of(const InpDeck& d, const InpTie& t) {
   std::vector<std::int64_t> ids;
-  const auto add = [&](const std::string& set) {
-    if (const auto found = d.nset.find(set); found != d.nset.end())
-      ids.insert(ids.end(), found->second.members.begin(), found->second.members.end());
+  const auto add = [&](const InpTarget& of) {
+    const auto more = numbers_in(d.nset, of);
+    ids.insert(ids.end(), more.begin(), more.end());
   };
-  if (t.kind == InpTie::Of::nodes) add(t.of);
+  if (t.kind == InpTie::Of::nodes) add({t.of});
   if (t.kind == InpTie::Of::surface)
     for (const InpSurface& s : d.surfaces)
       if (s.of_nodes && upper(s.name) == t.of)
-        for (const auto& l : s.lines) l.target.empty() ? ids.push_back(l.id) : add(l.target);
+        for (const auto& l : s.lines) add(l);
   sort_unique(ids);
   return ids;
 }
@@ -60,12 +53,12 @@ std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const 
     for (const auto a : nodes) w[a] = 1;
   };
   if (t.kind == InpTie::Of::nodes) {
-    add(inp_nodes(d, t.of, 0, t.place));
+    add(inp_nodes(d, {t.of, 0, t.place}));
   } else if (t.kind == InpTie::Of::weighted) {
     for (const auto& [of, weight] : t.weights)
-      for (const auto a : inp_nodes(d, of.name, of.id, of.place)) w[a] += weight;
+      for (const auto a : inp_nodes(d, of)) w[a] += weight;
   } else if (t.kind == InpTie::Of::cells) {
-    for (const auto c : inp_cells(d, t.of, 0, t.place)) add({m.cell(c).begin(), m.cell(c).end()});
+    for (const auto c : inp_cells(d, {t.of, 0, t.place})) add({m.cell(c).begin(), m.cell(c).end()});
   } else if (const auto s = surface.find(t.of); s != surface.end() && m.facet_sets.contains(s->second)) {
     for (const Facet& f : m.facet_sets.at(s->second)) {
       const auto nodes = m.facet_nodes(f);
@@ -79,7 +72,7 @@ std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const 
     for (const InpSurface& s2 : d.surfaces)
       if (s2.of_nodes && upper(s2.name) == t.of) {
         found = true;
-        for (const auto& l : s2.lines) add(inp_nodes(d, l.target, l.id, l.place));
+        for (const auto& l : s2.lines) add(inp_nodes(d, l));
       }
     if (!found) throw Error(t.place, fmt::format("{}: no surface \"{}\"", t.name, t.of));
   }
@@ -88,16 +81,14 @@ std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const 
 
 /// The node of the one DCOUP3D of its element set.
 std::int64_t node_of_coupling(const InpDeck& d, const InpTie& t) {
-  const auto set = d.elset.find(t.reference.name);
-  if (set == d.elset.end())
-    throw Error(t.reference.place, fmt::format("no element set \"{}\"", t.reference.name), suggest_name(t.reference.name, d.elset));
+  const InpSet& set = set_of(d.elset, t.reference, "element", false);
   const InpPoint* one = nullptr;
-  for (const auto id : set->second.members)
+  for (const auto id : set.members)
     if (const auto p = d.points.find(id); p != d.points.end() && p->second.type == "DCOUP3D") {
-      if (one) throw Error(t.place, fmt::format("{}: element set \"{}\" has several DCOUP3D", t.name, set->second.name), "one for each");
+      if (one) throw Error(t.place, fmt::format("{}: element set \"{}\" has several DCOUP3D", t.name, set.name), "one for each");
       one = &p->second;
     }
-  if (!one) throw Error(t.place, fmt::format("{}: element set \"{}\" has no DCOUP3D", t.name, set->second.name));
+  if (!one) throw Error(t.place, fmt::format("{}: element set \"{}\" has no DCOUP3D", t.name, set.name));
   return one->nodes[0];
 }
 
@@ -112,6 +103,59 @@ Vec3 mean_of(const InpDeck& d, const InpTie& t, const std::map<std::int64_t, dou
   return n > 0 ? Vec3(sum / n) : sum;
 }
 
+/// `w`: the nodes of cells that it takes, with weights; `ref`: its reference node.
+void find_tie(InpDeck& d, Imported& in, const InpTie& t, std::map<std::int64_t, double> w, std::int64_t ref) {
+  if (t.undecided) return in.skip(t.name + " without *KINEMATIC or *DISTRIBUTING", t.place);
+  if (d.node.contains(ref) && !d.bodies.contains(ref)) return in.skip(t.name + " whose reference node is a node of a cell", t.place);
+  if (in.sheets && !t.mean) {  // a patch of pairs turns with the body, and must not lie on a line
+    std::vector<Vec3> points;
+    for (const auto& [a, weight] : w) points.push_back(in.mesh.X[static_cast<size_t>(a)]);
+    if (t.components != 63 || on_a_line(points))
+      for (const auto& [a, weight] : w)
+        if (!in.sheets->at(a).empty())
+          d.bodies.try_emplace(in.mesh.node_id[static_cast<size_t>(a)], InpBody{in.mesh.X[static_cast<size_t>(a)], t.place, {}});
+  }
+  std::vector<std::int64_t> beams;  // nodes of beams, and others that are bodies, among them
+  std::vector<std::int64_t> ids = ids_of(d, t);
+  for (const auto& [a, weight] : w) ids.push_back(in.mesh.node_id[static_cast<size_t>(a)]);
+  sort_unique(ids);
+  for (const auto id : ids)
+    if (d.bodies.contains(id) && id != ref) {
+      beams.push_back(id);
+      if (const auto a = d.node.find(id); a != d.node.end()) w.erase(a->second);
+    }
+  if (t.kind == InpTie::Of::surface && w.empty() && beams.empty())
+    throw Error(t.place, fmt::format("{}: no node of surface \"{}\" is of a cell or a beam", t.name, t.of));
+  if (t.kind != InpTie::Of::nodes && !d.beams.empty())
+    if (const auto set = d.elset.find(t.of);
+        set != d.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d.beams.contains(id); }))
+      throw Error(t.place, fmt::format("{}: element set \"{}\" has beams", t.name, set->second.name), "a set of their nodes");
+  if (!t.mean && !beams.empty() && t.components != 63 && t.own_axes)
+    return in.skip(t.name + " of some components in axes of its own, of nodes of beams", t.place);
+  if (t.mean && !beams.empty()) return in.skip(t.name + ", distributing, of nodes of beams", t.place);
+  if (t.mean) {
+    if (t.own_axes && (t.components & 7) != 7)
+      in.skip(t.name + ", distributing, of some components in axes of its own", t.place);
+    else if (d.bodies.contains(ref))
+      in.skip(t.name + ", distributing, whose node carries springs, masses or rigid bodies", t.place);
+    else if (!d.means.try_emplace(ref, InpMean{place_of(d, ref, t.place), w, t.place}).second)
+      in.skip(t.name + " of a node that has one already", t.place);
+    return;
+  }
+  if ((t.components & 7) != 7 && (t.own_axes || (!w.empty() && (t.components & 7) == 0) || w.size() > most_rows))
+    return in.skip(t.name + (t.own_axes             ? " of some components in axes of its own"
+                             : w.size() > most_rows ? fmt::format(" of some components of more than {} nodes", most_rows)
+                                                    : " of turns alone, which nodes of solids do not have"),
+                   t.place);
+  if (d.means.erase(ref) > 0) in.skip("*DISTRIBUTING of a node that is *KINEMATIC too", t.place);
+  auto& body = d.bodies.try_emplace(ref, InpBody{place_of(d, ref, t.place), t.place, {}}).first->second;
+  std::vector<std::int64_t> rows;
+  for (const auto& [a, weight] : w) rows.push_back(a);
+  if (!rows.empty()) body.carries.push_back({t.name, t.place, rows, t.components & 7});
+  for (const auto id : beams) body.bodies.emplace_back(id, t.components);
+  if (!t.turns.target.empty() || t.turns.id) d.turns_of[node_of(d, t.turns)] = ref;
+}
+
 }  // namespace
 
 void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string>& surface) {
@@ -121,71 +165,10 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
       if (p.type != "DCOUP3D" && !d.node.contains(n)) d.bodies.try_emplace(n, InpBody{place_of(d, n, p.place), p.place, {}});
   for (const InpTie& t : d.ties) {
     if (t.left_out) continue;
-    auto w = members(d, t, in.mesh, surface);
+    const auto w = members(d, t, in.mesh, surface);
     const auto ref = t.no_node ? --own : t.kind == InpTie::Of::weighted ? node_of_coupling(d, t) : node_of(d, t.reference);
     if (t.no_node) d.loose[ref] = mean_of(d, t, w, in.mesh);
-    if (t.undecided) {
-      in.skip(t.name + " without *KINEMATIC or *DISTRIBUTING", t.place);
-      continue;
-    }
-    if (d.node.contains(ref) && !d.bodies.contains(ref)) {
-      in.skip(t.name + " whose reference node is a node of a cell", t.place);
-      continue;
-    }
-    if (in.sheets && !t.mean) {  // a patch of pairs turns with the body, and must not lie on a line
-      std::vector<Vec3> points;
-      for (const auto& [a, weight] : w) points.push_back(in.mesh.X[static_cast<size_t>(a)]);
-      if (t.components != 63 || on_a_line(points))
-        for (const auto& [a, weight] : w)
-          if (!in.sheets->at(a).empty())
-            d.bodies.try_emplace(in.mesh.node_id[static_cast<size_t>(a)], InpBody{in.mesh.X[static_cast<size_t>(a)], t.place, {}});
-    }
-    std::vector<std::int64_t> beams;  // nodes of beams, and others that are bodies, among them
-    std::vector<std::int64_t> ids = ids_of(d, t);
-    for (const auto& [a, weight] : w) ids.push_back(in.mesh.node_id[static_cast<size_t>(a)]);
-    sort_unique(ids);
-    for (const auto id : ids)
-      if (d.bodies.contains(id) && id != ref) {
-        beams.push_back(id);
-        if (const auto a = d.node.find(id); a != d.node.end()) w.erase(a->second);
-      }
-    if (t.kind == InpTie::Of::surface && w.empty() && beams.empty())
-      throw Error(t.place, fmt::format("{}: no node of surface \"{}\" is of a cell or a beam", t.name, t.of));
-    if (t.kind != InpTie::Of::nodes && !d.beams.empty())
-      if (const auto set = d.elset.find(t.of);
-          set != d.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d.beams.contains(id); }))
-        throw Error(t.place, fmt::format("{}: element set \"{}\" has beams", t.name, set->second.name), "a set of their nodes");
-    if (!t.mean && !beams.empty() && t.components != 63 && t.own_axes) {
-      in.skip(t.name + " of some components in axes of its own, of nodes of beams", t.place);
-      continue;
-    }
-    if (t.mean && !beams.empty()) {
-      in.skip(t.name + ", distributing, of nodes of beams", t.place);
-      continue;
-    }
-    if (t.mean) {
-      if (t.own_axes && (t.components & 7) != 7)
-        in.skip(t.name + ", distributing, of some components in axes of its own", t.place);
-      else if (d.bodies.contains(ref))
-        in.skip(t.name + ", distributing, whose node carries springs, masses or rigid bodies", t.place);
-      else if (!d.means.try_emplace(ref, InpMean{place_of(d, ref, t.place), w, t.place}).second)
-        in.skip(t.name + " of a node that has one already", t.place);
-      continue;
-    }
-    if ((t.components & 7) != 7 && (t.own_axes || (!w.empty() && (t.components & 7) == 0) || w.size() > most_rows)) {
-      in.skip(t.name + (t.own_axes             ? " of some components in axes of its own"
-                        : w.size() > most_rows ? fmt::format(" of some components of more than {} nodes", most_rows)
-                                               : " of turns alone, which nodes of solids do not have"),
-              t.place);
-      continue;
-    }
-    if (d.means.erase(ref) > 0) in.skip("*DISTRIBUTING of a node that is *KINEMATIC too", t.place);
-    auto& body = d.bodies.try_emplace(ref, InpBody{place_of(d, ref, t.place), t.place, {}}).first->second;
-    std::vector<std::int64_t> rows;
-    for (const auto& [a, weight] : w) rows.push_back(a);
-    if (!rows.empty()) body.carries.push_back({t.name, t.place, rows, t.components & 7});
-    for (const auto id : beams) body.bodies.emplace_back(id, t.components);
-    if (!t.turns.name.empty() || t.turns.id) d.turns_of[node_of(d, t.turns)] = ref;
+    find_tie(d, in, t, w, ref);
   }
 }
 
@@ -194,13 +177,8 @@ bool is_tied(const InpDeck& d, std::int64_t id) {
 }
 
 void tied_lines(const InpDeck& d, const InpNodal& l, const std::function<void(std::int64_t, int, int)>& use) {
-  std::vector<std::int64_t> ids{l.id};
-  if (!l.target.empty()) {
-    const auto set = d.nset.find(l.target);
-    if (set == d.nset.end()) return;
-    ids = set->second.members;
-    sort_unique(ids);
-  }
+  auto ids = numbers_in(d.nset, l);
+  sort_unique(ids);
   for (const auto id : ids) {
     if (const auto turns = d.turns_of.find(id); turns != d.turns_of.end())
       use(turns->second, l.first + 3, std::min(l.last, 3) + 3);  // 1 to 3 of a ROT NODE are turns
@@ -213,14 +191,8 @@ void tied_lines(const InpDeck& d, const InpNodal& l, const std::function<void(st
 std::string body_name(const InpDeck& d, std::int64_t id) {
   const bool assembly = id >= assembly_numbers;
   std::string name = id < 0 ? fmt::format("rigid_body_{}", -id) : fmt::format("node_{}", assembly ? id - assembly_numbers : id);
-  const auto taken = [&] {
-    const std::string key = upper(name);
-    return d.nset.contains(key) || d.elset.contains(key) ||
-           std::any_of(d.surfaces.begin(), d.surfaces.end(), [&](const InpSurface& s) { return upper(s.name) == key; });
-  };
   if (assembly && d.node.contains(id - assembly_numbers)) name = "assembly_" + name;
-  while (taken()) name += "_body";
-  return name;
+  return free_body_name(d, name);
 }
 
 double size_of(const InpDeck& d, const Mesh& mesh) {
@@ -232,10 +204,7 @@ double size_of(const InpDeck& d, const Mesh& mesh) {
 }
 
 void write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOptions& o, SceneWriter& scene) {
-  const auto X = [&](std::int64_t id) {
-    const auto a = d.node.find(id);
-    return a != d.node.end() ? in.mesh.X[a->second] : d.loose.at(id);
-  };
+  const auto X = [&](std::int64_t id) { return *point_of(d, in.mesh, id); };
   std::map<std::int64_t, std::string> of_node;
   const auto end_name = [&](std::int64_t id) {
     if (d.bodies.contains(id)) return body_name(d, id);
@@ -245,52 +214,40 @@ void write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOpt
   };
   std::set<std::int64_t> own_axes;
   for (const InpTransform& t : d.transformed)
-    for (const auto id : numbers_of(d, {t.target, t.id, t.place})) own_axes.insert(id);
+    for (const auto id : numbers_of(d, t)) own_axes.insert(id);
   std::map<std::int64_t, double> mass;
   SceneWriter springs;
   const double size = size_of(d, in.mesh);
   std::set<std::int64_t> valued;
+  const auto give = [&](const InpPointValue& v, std::int64_t id) {
+    const auto p = d.points.find(id);
+    if (p == d.points.end() || v.first.empty()) return;
+    const std::string& type = p->second.type;
+    const double value = v.first.back();
+    if (type == "DCOUP3D" || (type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) return;
+    if (!valued.insert(id).second)
+      throw Error(v.place, fmt::format("{} of element {} is given twice", v.name, id), "give each element one value");
+    if (v.more)
+      in.skip(v.name + (v.table ? ": numbers after the first two, of temperatures"
+                                : ": numbers after the first, of temperatures or frequencies"),
+              v.place);
+    if (!v.table && value < 0) return in.skip(v.name + " below zero", v.place);
+    if (type == "MASS" && v.first.size() > 1) return in.skip(v.name + " of several values", v.place);
+    if (type == "MASS") return void(mass[p->second.nodes[0]] += value);
+    if (!type.ends_with('A') && std::ranges::any_of(p->second.nodes, [&](auto n) { return own_axes.contains(n); }))
+      return in.skip(v.name + " in axes of *TRANSFORM", v.place);
+    InpPointSpring spring{p->second, v, {}};
+    for (const auto node : p->second.nodes) spring.ends.push_back({"", X(node), d.bodies.contains(node)});
+    if (const std::string why = why_no_spring(spring); !why.empty()) return in.skip(why, v.place);
+    for (size_t k = 0; k < spring.ends.size(); ++k) spring.ends[k].name = end_name(p->second.nodes[k]);
+    write_point_spring(d, size, spring, o, springs);
+  };
   for (const InpPointValue& v : d.point_values) {
     auto set = d.elset.find(v.elset);
     if (set == d.elset.end()) set = d.elset.find(unqualified(v.elset));
     if (set == d.elset.end())
       throw Error(v.place, fmt::format("{}: no element set \"{}\"", v.name, v.elset), suggest_name(v.elset, d.elset));
-    for (const auto id : set->second.members) {
-      const auto p = d.points.find(id);
-      if (p == d.points.end() || v.first.empty()) continue;
-      const std::string& type = p->second.type;
-      const double value = v.first.back();
-      if (type == "DCOUP3D" || (type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) continue;
-      if (!valued.insert(id).second)
-        throw Error(v.place, fmt::format("{} of element {} is given twice", v.name, id), "give each element one value");
-      if (v.more)
-        in.skip(v.name + (v.table ? ": numbers after the first two, of temperatures"
-                                  : ": numbers after the first, of temperatures or frequencies"),
-                v.place);
-      if (!v.table && value < 0) {
-        in.skip(v.name + " below zero", v.place);
-        continue;
-      }
-      if (type == "MASS") {
-        if (v.first.size() > 1)
-          in.skip(v.name + " of several values", v.place);
-        else
-          mass[p->second.nodes[0]] += value;
-        continue;
-      }
-      if (!type.ends_with('A') && std::ranges::any_of(p->second.nodes, [&](auto n) { return own_axes.contains(n); })) {
-        in.skip(v.name + " in axes of *TRANSFORM", v.place);
-        continue;
-      }
-      InpPointSpring spring{p->second, v, {}};
-      for (const auto node : p->second.nodes) spring.ends.push_back({"", X(node), d.bodies.contains(node)});
-      if (std::string why = why_no_spring(spring); !why.empty()) {
-        in.skip(why, v.place);
-        continue;
-      }
-      for (size_t k = 0; k < spring.ends.size(); ++k) spring.ends[k].name = end_name(p->second.nodes[k]);
-      write_point_spring(d, size, spring, o, springs);
-    }
+    for (const auto id : set->second.members) give(v, id);
   }
   for (const auto& [id, p] : d.points)
     if (!valued.contains(id) && !(p.type == "DCOUP3D" && d.means.contains(p.nodes[0])))

@@ -18,15 +18,13 @@ void nodes(InpReading& r) { refuse(r, "write the nodes out"); }
 
 }  // namespace
 
-std::span<const InpCard> inp_unread_cards() {
-  static constexpr InpCard cards[] = {
-      {"NMAP", nodes},        {"NODEPRINT", output},        {"NODEFILE", output},      {"NODEOUTPUT", output},   {"ELPRINT", output},
-      {"ELFILE", output},     {"ELEMENTOUTPUT", output},    {"OUTPUT", output},        {"CONTACTFILE", output},  {"CONTACTPRINT", output},
-      {"FACEPRINT", output},  {"CONTACTOUTPUT", output},    {"SECTIONPRINT", output},  {"PREPRINT", output},     {"ENERGYPRINT", output},
-      {"MONITOR", output},    {"TIMEPOINTS", output},       {"FILEFORMAT", output},    {"ENERGYOUTPUT", output}, {"RESTART", output},
-      {"ENERGYFILE", output}, {"SECTIONFILE", output},      {"MODALFILE", output},     {"MODALPRINT", output},   {"PRINT", output},
-      {"FILEOUTPUT", output}, {"INTEGRATEDOUTPUT", output}, {"RADIATIONFILE", output},
-  };
+std::vector<InpCard> inp_unread_cards() {
+  std::vector<InpCard> cards{{"NMAP", nodes}};
+  for (const char* name : {"NODEPRINT",   "NODEFILE",     "NODEOUTPUT", "ELPRINT",       "ELFILE",           "ELEMENTOUTPUT", "OUTPUT",
+                           "CONTACTFILE", "CONTACTPRINT", "FACEPRINT",  "CONTACTOUTPUT", "SECTIONPRINT",     "PREPRINT",      "ENERGYPRINT",
+                           "MONITOR",     "TIMEPOINTS",   "FILEFORMAT", "ENERGYOUTPUT",  "RESTART",          "ENERGYFILE",    "SECTIONFILE",
+                           "MODALFILE",   "MODALPRINT",   "PRINT",      "FILEOUTPUT",    "INTEGRATEDOUTPUT", "RADIATIONFILE"})
+    cards.push_back({name, output});
   return cards;
 }
 
