@@ -82,7 +82,8 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   // Sums of large energies are rounded, and so are positions: to 1e-12 of the scene at most.
   const double terms = std::abs(next_.energy.elastic) + std::abs(next_.energy.gravity) + std::abs(next_.work) + next_.dissipated;
   const double h = end.t - t_, way = rounding * system_.length;
-  rounding_next_ = std::max(rounding_, rounding * terms + way * way * (system_.stiffness + system_.mass / (h * h)));
+  rounding_next_ = std::max(
+      {rounding_, digit * newton.force * system_.length, rounding * terms + way * way * (system_.stiffness + system_.mass / (h * h))});
   // From rest the kinetic energy says little of what is to come; gravity's will be compared with it at the end.
   const double scale = moving_next_ + (rounding_next_ + 1e-10 * system_.mass * system_.gravity.norm() * system_.length) / energy_bound_;
   const double step = std::abs(next_.balance - now_.balance - (next_.left - now_.left)), sum = std::abs(next_.balance - next_.left);
