@@ -57,7 +57,7 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
     const NewtonReport r = newton(
         system, tools.solver, [&](const Unknown& u) { return from_left(stage(k, u), h); }, solved_[k], lambda_, tools.newton);
     all.iterations += r.iterations, all.linear_iterations += r.linear_iterations;
-    all.correction = r.correction, all.residual = r.residual, all.force = std::max(all.force, r.force);
+    all.correction = r.correction, all.residual = r.residual;
     all.left += r.left, all.gaps = r.gaps;
     all.least_det.take(r.least_det);
     if (!r.converged) {

@@ -142,7 +142,7 @@ void Newton::evaluate(bool tangent) {
   }
   assemble(system_, solver_, s, lambda_, r_, tangent);
   report_.least_det = r_.least_det;
-  report_.residual = system_.comm->max(relative_residual(system_, r_)), report_.force = r_.force_scale;
+  report_.residual = system_.comm->max(relative_residual(system_, r_));
 }
 
 /// What a solve may leave of the residual: a tenth of what is left to the tolerance, and no less than Newton's own error, about the square

@@ -27,7 +27,6 @@ struct NewtonReport {
   int iterations = 0;     // linear solves
   double correction = 0;  // last one, over the scene's length
   double residual = 0;    // last one, over the force scale
-  double force = 0;       // this scale, the largest force that it sums [N]
   LeastDet least_det;
   int linear_iterations = 0;
   double left = 0;           // work of the residual over the increments of the unknown from where it began [J]
