@@ -22,7 +22,7 @@ Energy energy_of(const System& system, const State& s, Side side) {
   return system.energy(s.q, v);
 }
 
-/// Of loads, weights and springs where the run starts, without those of joints [N].
+/// Of loads, weights and springs in a state, without those of joints [N].
 double largest_force(const System& system, const State& s) {
   Config none;
   combine(none, {{0, &s.q}});
@@ -83,10 +83,18 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   const double terms = std::abs(next_.energy.elastic) + std::abs(next_.energy.gravity) + std::abs(next_.work) + next_.dissipated;
   const double h = end.t - t_, way = rounding * system_.length;
   rounding_next_ = std::max(rounding_, rounding * terms + way * way * (system_.stiffness + system_.mass / (h * h)));
-  // From rest the kinetic energy says little of what is to come; gravity's will be compared with it at the end.
-  const double scale = moving_next_ + (rounding_next_ + 1e-10 * system_.mass * system_.gravity.norm() * system_.length) / energy_bound_;
   const double step = std::abs(next_.balance - now_.balance - (next_.left - now_.left)), sum = std::abs(next_.balance - next_.left);
-  step_ = step / scale, sum_ = sum / scale;
+  const auto compare = [&] {
+    // From rest the kinetic energy says little of what is to come; gravity's will be compared with it at the end.
+    const double scale = moving_next_ + (rounding_next_ + 1e-10 * system_.mass * system_.gravity.norm() * system_.length) / energy_bound_;
+    step_ = step / scale, sum_ = sum / scale;
+    return scale;
+  };
+  double scale = compare();
+  if (!(std::max(step_, sum_) <= energy_bound_)) {  // loads may have grown since the start
+    rounding_next_ = std::max(rounding_next_, digit * largest_force(system_, end) * system_.length);
+    scale = compare();
+  }
   if (!(step_ <= energy_bound_)) return fmt::format("the step changes the balance of energy by {:.2g} J of {:.2g} J", step, scale);
   if (!(sum_ <= energy_bound_ * std::max(1.0, n_steps_ / 1000)))
     return fmt::format("the balance of energy is off by {:.2g} J of {:.2g} J", sum, scale);

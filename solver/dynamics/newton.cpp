@@ -51,16 +51,20 @@ double size_of(const System& s, std::span<const double> z) {
 
 namespace {
 
-/// What the residual left works over the step, and how far it leaves the rows open.
-void tell_what_is_left(const System& s, const Residual& r, const Unknown& u, NewtonReport& report) {
-  const std::vector<double> step = u.increments(s);
+/// Of a residual over increments, without rows where these end before them.
+double work_of(const System& s, const Residual& r, std::span<const double> step) {
   double work = 0;
   for (size_t k = 0; k < step.size() / 3; ++k) {
     const std::int64_t owned = s.layout.map.global[k] - s.layout.map.first;  // of the ranks that hold the block one counts it
     if (owned < 0 || owned >= s.layout.map.n_owned) continue;
     for (size_t i = 3 * k; i < 3 * k + 3; ++i) work += r.r[i] * step[i];
   }
-  report.left = s.comm->sum(work);
+  return s.comm->sum(work);
+}
+
+/// What the residual left works over the step, and how far it leaves the rows open.
+void tell_what_is_left(const System& s, const Residual& r, const Unknown& u, NewtonReport& report) {
+  report.left = work_of(s, r, u.increments(s));
   report.gaps.assign(r.r.begin() + 3 * static_cast<std::ptrdiff_t>(s.first_joint_block()), r.r.end());
   for (double& g : report.gaps) g /= r.sigma;
 }
@@ -77,7 +81,7 @@ class Newton {
         lambda_(lambda),
         options_(options),
         guessed_(guess ? system.largest_difference(u.q, guess->before) / system.length : 0),
-        foresees_(system.traits().deforms && options.foresees),
+        foresees_(system.traits().deforms && options.foresees && !options.searches),
         last_(std::move(guess)) {
     if (!foresees_) last_.reset();
     if (foresees_ && system.traits().is_thin) growth_ = 10;  // thin parts settle with their stress foreseen, and damped they creep
@@ -93,6 +97,7 @@ class Newton {
   void move_along(double share);
   void go_as_far_as_allowed();
   bool go_damped();
+  bool search_along();
   void repeat_with_old_factors();
   void polish();
   void accept();
@@ -203,6 +208,29 @@ bool Newton::go_damped() {
     move_along(-share_);
   }
   return false;
+}
+
+/// The share of a correction after which the residual does no more work along it, to a tenth.  A correction slides what sticks farther
+/// than needed, as what slides has no stiffness; at given pressures friction has a convex potential, which is least there.
+bool Newton::search_along() {
+  constexpr int most = 10;
+  constexpr double least = 1e-3;  // a correction that soon meets what resists it creeps
+  direction_ = z_, before_ = u_.q;
+  const std::span<const double> way(direction_.data(), 3 * static_cast<size_t>(system_.first_joint_block()));
+  const double whole = std::abs(work_of(system_, r_, way));
+  double low = 0, below = -whole, high = 0, above = 0, gone = 1;
+  move_along(1);
+  share_ = system_.longest_share(before_, u_.q);
+  for (int k = 0; k < most; ++k) {
+    if (share_ != gone) move_along(share_ - gone);
+    gone = share_;
+    evaluate(false);
+    const double work = is_sound() ? work_of(system_, r_, way) : 1e3 * whole;
+    if (is_sound() && (std::abs(work) <= 0.1 * whole || (work < 0 && high == 0))) return share_ > least;
+    (work > 0 ? high : low) = share_, (work > 0 ? above : below) = work;
+    share_ = low + (high - low) * std::clamp(below / (below - above), 0.1, 0.9);
+  }
+  return is_sound() && share_ > least;
 }
 
 void Newton::accept() {  // the unknown evaluated last
@@ -319,9 +347,9 @@ NewtonReport Newton::take() {
     if (!solved.ok) return fail(solver_.name() + ": " + solved.message + (solved.is_singular ? free_part(system_, solver_, r_.sigma) : ""));
     if (!(report_.correction <= options_.reach)) return fail("the correction is not finite or leaves the scene");
     if (!options_.patient && report_.correction > (foreseen_ ? growth_ : 0.5) * previous && report_.correction > 1e-6) damped_ = true;
-    if (!damped_)
+    if (!damped_ && !options_.searches)
       go_as_far_as_allowed();
-    else if (!go_damped())
+    else if (!(options_.searches ? search_along() : go_damped()))
       return fail("Newton does not converge, nor with damped corrections");
     if (!damped_ && report_.correction <= options_.tolerance * 1e-2) {  // far below what the next one could change
       evaluate(false);

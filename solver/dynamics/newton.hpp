@@ -18,6 +18,7 @@ struct NewtonOptions {
   bool always_chooses = false;  // what is chosen within a step is chosen in every iteration: where equilibrium is far
   double reach = 1e3;           // largest correction, in lengths of the scene; a guess farther off may lead to another root
   bool foresees = false;        // tangents have the stresses that the last correction foresaw, while corrections halve
+  bool searches = false;        // goes along each correction until forces work no further: for what slides in part
   double least_share = 1e-3;    // of a damped correction; below it the guess is given up
 };
 

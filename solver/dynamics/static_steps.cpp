@@ -128,8 +128,18 @@ class StaticSteps final : public Steps {
     NewtonOptions options = run_.newton;
     options.least_share = 0.03;  // a smaller step costs less
     LoadStep step{state.t, at_.done};
-    r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, false, options, &step);
-    run_.report.iterations += r.iterations;
+    const auto solve = [&](const NewtonOptions& how) {
+      r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, false, how, &step);
+      run_.report.iterations += r.iterations;
+    };
+    solve(options);
+    if (!r.converged && system.traits().slides) {
+      reached.q = state.q, reached.lambda = state.lambda;
+      system.commit(state.q), search(0);
+      NewtonOptions along = options;
+      along.searches = along.patient = true, along.max_iterations = std::max(options.max_iterations, 60);
+      solve(along);
+    }
     if (!r.converged && r.least_det.det > 0 && at_.step <= std::ldexp(1.0 / n_,
                                                                       -4)) {  // a sharp bend: held back by a mass that fades
       reached.q = state.q, reached.lambda = state.lambda;

@@ -71,7 +71,7 @@ double Contacts::gap(const ContactPair& pair, const ContactPoint& point, const C
 void Contacts::hold(const Config& q) {
   about_ = q;
   each_pair([&](ContactPair& pair) {
-    for (ContactPoint& point : pair.points) point.held = HeldPoint::at(point.law, gap(pair, point, q), point.u);
+    for (ContactPoint& point : pair.points) point.held = HeldPoint::at(point.law, gap(pair, point, q));
   });
   for (SurfacePair& pair : surfaces) pair.hold(q);
 }

@@ -9,10 +9,10 @@
 namespace hilo {
 namespace {
 
-/// Where a point stands beside a triangle: its distance, the gap to the plane, and the side that is nearest, or -1.
+/// Where a point stands beside a triangle: its distance, the gap to the plane, and the side that is nearest, or -1; beside a corner both.
 struct Beside {
   double distance, gap;
-  int edge;
+  int edge, second = -1;
 };
 Beside beside(const Vec3& x, const std::array<Vec3, 3>& v) {
   const Vec3 t1 = v[1] - v[0], t2 = v[2] - v[0], r = x - v[0], n = t1.cross(t2);
@@ -22,7 +22,9 @@ Beside beside(const Vec3& x, const std::array<Vec3, 3>& v) {
   for (int k = 0; k < 3; ++k) {
     const Vec3 e = v[(k + 1) % 3] - v[k], from = x - v[k];
     const double d = (from - std::clamp(from.dot(e) / e.squaredNorm(), 0., 1.) * e).norm();
-    if (d < out.distance) out.distance = d, out.edge = k;
+    const bool both = std::abs(d - out.distance) <= 1e-9 * d;
+    out.second = both ? k : d < out.distance ? -1 : out.second;
+    if (d < out.distance && !both) out.distance = d, out.edge = k;
   }
   return out;
 }
@@ -117,6 +119,11 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
     const auto v0 = other.triangle(face, t, x0), v1 = other.triangle(face, t, x1);
     return std::array<Vec3, 3>{(1 - f) * v0[0] + f * v1[0], (1 - f) * v0[1] + f * v1[1], (1 - f) * v0[2] + f * v1[2]};
   };
+  const auto is_border = [&](int number, int t, int side) {
+    const ContactSurface::Face& face = other.faces[number];
+    const int edge = side < 0 ? -1 : cut_of(face.n).on_edge[t][side];
+    return edge >= 0 && (face.border[edge] || (hangs && is_beside(s, point.face, face.across[edge])));
+  };
   double bound = 1e300;  // of what need be looked at: the distance of the partner whose middle is nearest
   int closest = -1;
   std::array<Beside, most_triangles> known;  // of its triangles
@@ -132,20 +139,19 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
     const Ball& ball = ball_[1 - s][partner.face];
     const double away = (middle - ball.centre).norm() - ball.radius;
     if (away > std::min(least, bound) && away > way) continue;
-    const ContactSurface::Face& face = other.faces[partner.face];
-    const FacetCut& cut = cut_of(face.n);
-    for (int t = 0; t < static_cast<int>(cut.triangle.size()); ++t) {
+    for (int t = 0; t < static_cast<int>(cut_of(other.faces[partner.face].n).triangle.size()); ++t) {
       if (!held && away <= way)
         if (const double when = crossing(p0, p1, other.triangle(partner.face, t, x0), other.triangle(partner.face, t, x1)); when < soonest)
           soonest = when, first = {partner.face, t, true, true};
       const Beside at = partner.face == closest ? known[t] : beside(middle, between(partner.face, t));
       if (hangs && !may_meet_there(s, point, partner.face, at.distance, at.gap)) continue;
       const double slack = 1e-9 * least + 1e-12 * ball.radius;
-      if (at.distance > least + slack || (at.distance > least - slack && std::abs(at.gap) <= std::abs(gap) + slack)) continue;
+      if (at.distance > least + slack) continue;
+      const bool as_near = at.distance > least - slack;  // a corner of the border is one of all triangles that have it
+      at_border = (as_near && at_border) || is_border(partner.face, t, at.edge) || is_border(partner.face, t, at.second);
+      if (as_near && std::abs(at.gap) <= std::abs(gap) + slack) continue;
       least = std::min(least, at.distance), gap = at.gap;
       nearest = {partner.face, t, false, at.edge < 0 && gap < 0 && -gap < margin / 2};
-      const int edge = at.edge < 0 ? -1 : cut.on_edge[t][at.edge];
-      at_border = edge >= 0 && (face.border[edge] || (hangs && is_beside(s, point.face, face.across[edge])));
     }
   }
   if (soonest <= 1) return faced(s, point, first, p1, x1);

@@ -121,8 +121,7 @@ void SurfacePair::hold(const Config& q) {
     for (SurfacePoint& point : side[k].points) {
       point.now = point.state, point.held = {};
       if (point.now.face < 0 || !(point.state.past.gap < 0)) continue;
-      const auto& [u1, u2] = point.state.past.bent;
-      point.held = HeldPoint::at(point.law, gap_of(over(k, point, point.now, q.x)) - point.state.past.offset, {u1, u2, 0});
+      point.held = HeldPoint::at(point.law, gap_of(over(k, point, point.now, q.x)) - point.state.past.offset);
     }
 }
 

@@ -187,14 +187,14 @@ PointForce<T> at_rest(const Distance& shape, const PointLaw& law, const Triple<T
 }
 
 /// How a point was when small motions about a state began: one that is pressed is held by the slopes of its law, whichever way it moves.
+/// With friction it sticks, also where it slid to the state: once it has turned, a vibration bends its bristle no farther than at first.
 struct HeldPoint {
-  bool pressed = false, sticks = false;  // sticks: friction that does not slide holds along the obstacle too
-  double gap = 0, pressing = 0;          // [m, N]
-  /// Of a gap g and a bristle u.
-  static HeldPoint at(const PointLaw& law, double g, const Vec3& u) {
-    HeldPoint out{.pressed = g < 0, .gap = g};
+  bool pressed = false, sticks = false;
+  double gap = 0, pressing = 0;  // [m, N]
+  /// Of a gap g.
+  static HeldPoint at(const PointLaw& law, double g) {
+    HeldPoint out{.pressed = g < 0, .sticks = g < 0 && law.friction > 0, .gap = g};
     out.pressing = g >= 0 ? 0 : law.hertz > 0 ? -law.hertz * g * std::sqrt(-g) : -law.k * g;
-    out.sticks = out.pressed && law.friction > 0 && law.kt * u.norm() < law.friction * out.pressing;
     return out;
   }
   /// Pressure at another gap.

@@ -68,6 +68,30 @@ TEST(Audit, NoBodyTurnsByHalfATurnInAStep) {
   }
 }
 
+// Truth: p(t) h/E.  A load that grows slowly from nothing: the kinetic energy stays far below what positions are rounded to under the load.
+TEST(Audit, ASlowLoadFromRestIsNoLossOfEnergy) {
+  for (const bool lies : {false, true}) {
+    Case c("contact");
+    BlockOptions o;
+    o.n[0] = 3, o.n[1] = o.n[2] = 2, o.high = Vec3(0.3, 0.2, 0.1);
+    c.use(block_mesh(o), {Fidelity::nonlinear});
+    c.write(
+        "scene.toml",
+        std::string("[material.m]\nE = 1e9\nnu = 0\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n[[load]]\nkind = \"pressure\"\n"
+                    "name = \"N\"\non = \"zmax\"\npressure = 1e3\nhistory = {t = [0, 0.2, 1], value = [0, 1, 1]}\n"
+                    "[[joint]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"ground\"\nb = \"zmax\"\nat = [0.15, 0.1, 0.1]\naxis = [0, "
+                    "0, 1]\n[[probe]]\nname = \"top\"\non = \"zmax\"\n[time]\nend = 0.4\n") +
+            (lies ? "[[obstacle]]\nkind = \"plane\"\nname = \"ground\"\n[[contact]]\nname = \"c\"\na = \"ground\"\nb = \"zmin\"\n"
+                  : "[[motion]]\nkind = \"fixed\"\nname = \"foot\"\non = \"zmin\"\n"));
+    for (const double step : {0.05, 0.02}) {
+      succeeded(c.run(fmt::format("hilo-solve --quiet scene.toml tags.h5 --set time.step={} -o run.h5", step)));
+      EXPECT_EQ(c.reported("steps"), std::lround(0.4 / step)) << lies;
+      const Eigen::VectorXd end = Results(c / "run.h5").at("probe/top", 0.4);
+      EXPECT_NEAR(0.1 - end[2], 1e3 / 1e9 * (lies ? 0.15 : 0.1), 0.05e-7) << lies << step << ", and a little vibration";
+    }
+  }
+}
+
 TEST(Audit, AMechanismDrawnFlatKeepsEveryJoint) {
   const Case c("../cases");
   for (const char* scene : {"flat_parallelogram", "flat_parallelogram_driven"}) {

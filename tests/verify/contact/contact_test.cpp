@@ -143,6 +143,28 @@ TEST(Contact, BallThatSlidesComesToRoll) {
   EXPECT_NEAR(x(x.rows() - 1, 0), way, 1e-5 * way);
 }
 
+// Truth: g sin(a)/(1 + 2/5/sin(b)^2), as a ball in a groove of half angle b rolls about the line through both points that it touches.
+TEST(Contact, ABallRollsDownAGroove) {
+  const Case c("contact");
+  for (const double b : {0.4, 1.3}) {
+    const double R = 0.1, high = R / std::sin(b) - 1e-6, a = 0.1;
+    std::string text = fmt::format(
+        "gravity = [{}, 0, {}]\n[[body]]\nname = \"ball\"\nmass = 4\ncom = [0, 0, {}]\ninertia = [0.016, 0.016, 0.016]\n[[obstacle]]\n"
+        "kind = \"sphere\"\nname = \"skin\"\non = \"ball\"\nradius = {}\nat = [0, 0, {}]\n[[probe]]\nname = \"p\"\non = \"ball\"\n"
+        "[time]\nend = 1\nstep = 0.01\n",
+        g * std::sin(a), -g * std::cos(a), high, R, high);
+    for (const int side : {-1, 1})
+      text += fmt::format(
+          "[[obstacle]]\nkind = \"plane\"\nname = \"{0}\"\naxis = [0, {1}, {2}]\n[[contact]]\nname = \"{0}\"\na = \"{0}\"\nb = \"skin\"\n"
+          "stiffness = 1e7\nfriction = 0.5\n",
+          side < 0 ? "left" : "right", side * std::cos(b), std::sin(b));
+    std::ofstream(c / "groove.toml") << text;
+    succeeded(c.run("hilo-solve --quiet groove.toml -o run.h5"));
+    const double way = g * std::sin(a) / (1 + 0.4 / (std::sin(b) * std::sin(b))) / 2;
+    EXPECT_NEAR(Results(c / "run.h5").at("probe/p", 1)[0], way, 2e-5 * way) << b;
+  }
+}
+
 // Truth: the same of a region, whose points share the load; it is set down without a bounce, and shakes a little as it stops.
 TEST(Contact, RegionSlidesToRest) {
   for (const Fidelity fidelity : {Fidelity::nonlinear, Fidelity::linear, Fidelity::rigid}) {
@@ -198,7 +220,8 @@ TEST(Contact, BarBouncesThreeTimes) {
   BlockOptions o;
   o.n[2] = 100, o.low = Vec3(0, 0, 0.05), o.high = Vec3(0.1, 0.1, 10.05);
   c.use(block_mesh(o));
-  const Results r = c.solved("", "run.h5", "bar");
+  // steps of 1/sqrt(2) of the time that a wave takes through a cell: what they add to its period is what the mesh takes from it
+  const Results r = c.solved(fmt::format("--set time.step={}", 0.1 / 30 / std::numbers::sqrt2), "run.h5", "bar");
   const auto f = r.history("contact/c"), e = r.history("energy");
   std::vector<double> changes;
   for (Eigen::Index k = 1; k < f.rows(); ++k)
@@ -206,10 +229,13 @@ TEST(Contact, BarBouncesThreeTimes) {
   const double truth[] = {1, 5. / 3, 11. / 3, 13. / 3, 19. / 3, 7};
   ASSERT_EQ(changes.size(), 6u);
   for (int k = 0; k < 6; ++k) EXPECT_NEAR(changes[k], truth[k], 0.05) << k;
+  for (int k = 0; k < 6; k += 2) EXPECT_NEAR(changes[k + 1] - changes[k], 2. / 3, 0.02 * 2 / 3) << k;
   EXPECT_LT(e.col(5).cwiseAbs().maxCoeff(), 1e-8 * e.col(0).maxCoeff());
   // the force of the wave, rho c A v, of parts that fall the faster the later it stops them
-  EXPECT_NEAR(r.t()[390], 1.3, 1e-9);
-  EXPECT_NEAR(f(390, 2), 30 * 0.01 * (0.1 + 0.1 * 0.3), 0.01 * 0.039);
+  double force = 0, n = 0;
+  for (Eigen::Index k = 0; k < f.rows(); ++k)
+    if (std::abs(r.t()[k] - 1.3) < 0.2) force += f(k, 2), ++n;
+  EXPECT_NEAR(force / n, 30 * 0.01 * (0.1 + 0.1 * 0.3), 0.01 * 0.039);
 }
 
 /// A body that carries an obstacle of about 1 m, and another one with a ball, or a box where a container or a plane is met, thrown at it.

@@ -157,6 +157,31 @@ TEST(LoadSteps, ABlockSlidesInManySteps) {
   EXPECT_LE(c.reported("steps"), 65);
 }
 
+// Truth: a bar that friction q [N/m] holds is pulled at its end by F < q L: it slides over F/q of its length, and its end goes F^2/(2 EA
+// q); a cycle between F and -F takes 2/3 F^3/(EA q).
+TEST(LoadSteps, ABarThatSlidesInPart) {
+  constexpr double q = 1500, EA = 1e6, F = 900, end = F * F / (2 * EA * q), loss = 2 * F * F * F / (3 * EA * q);
+  Case c("contact");
+  BlockOptions o;
+  o.n[0] = 20, o.high = Vec3(1, 0.05, 0.02);
+  c.use(block_mesh(o), {Fidelity::nonlinear});
+  c.write(
+      "scene.toml",
+      "[material.m]\nE = 1e9\nnu = 0\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n[[obstacle]]\nkind = \"plane\"\nname = \"ground\"\n"
+      "[[contact]]\nname = \"c\"\na = \"ground\"\nb = \"zmin\"\nfriction = 0.3\n[[probe]]\nname = \"end\"\non = \"xmax\"\n"
+      "[[load]]\nkind = \"pressure\"\nname = \"p\"\non = \"zmax\"\npressure = 1e5\nhistory = {t = [0, 1, 9], value = [0, 1, 1]}\n"
+      "[[load]]\nkind = \"force\"\nname = \"F\"\non = \"xmax\"\nforce = [900, 0, 0]\n"
+      "history = {t = [0, 1, 2, 4, 6, 8], value = [0, 0, 1, -1, 1, -1]}\n"
+      "[[motion]]\nkind = \"fixed\"\nname = \"side\"\non = \"ymin\"\ncomponents = [\"y\"]\n"
+      "[time]\nanalysis = \"static\"\nsteps = 8\nend = 8\n");
+  succeeded(c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
+  const Results r(c / "run.h5");
+  for (const double t : {2., 4., 6., 8.}) EXPECT_NEAR(r.at("probe/end", t)[0] - 1, (t == 2 || t == 6 ? 1 : -1) * end, 0.03 * end) << t;
+  for (const double t : {6., 8.}) EXPECT_NEAR(r.at("contact/c", t)[6] - r.at("contact/c", t - 4)[6], loss, 0.03 * loss) << t;
+  EXPECT_LE(c.reported("steps"), 12) << "of eight asked for";
+  EXPECT_LT(c.reported("newton_iterations"), 500);
+}
+
 // Truth: its weight.  Contact alone holds it, against what does not move: an obstacle, or a region that is held as a whole.
 TEST(LoadSteps, ABlockStands) {
   for (const bool on_region : {false, true}) {

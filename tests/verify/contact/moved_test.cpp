@@ -45,5 +45,33 @@ TEST(Moved, ABallOnATurntableGoesRoundACircle) {
   EXPECT_LT(unbalanced(r), 1e-11);
 }
 
+// Truth: mu p (r2^2 - r1^2) sin(a) across and mu p 2a (r2^3 - r1^3)/3 of torque, of a pad between radii r1, r2 and angles -a, a on a disc
+// that turns under it.  Rigid and flat, so that nothing gives way to points that should be open: those beyond a corner of the pad were
+// pressed, as the side that is nearest to them was one of two.
+TEST(Moved, ARigidPadOnARigidDisc) {
+  BlockOptions disc, pad;
+  disc.regions = {"disc"}, disc.n[0] = 5, disc.n[1] = 25, disc.low = Vec3(0.06, -3, -0.02), disc.high = Vec3(0.26, 0.9, 0);
+  pad.regions = {"pad"}, pad.n[0] = 3, pad.n[1] = 6, pad.n[2] = 2, pad.low = Vec3(0.1, -0.3, 0), pad.high = Vec3(0.2, 0.3, 0.02);
+  disc.map = pad.map = [](const Vec3& x) { return Vec3(x[0] * std::cos(x[1]), x[0] * std::sin(x[1]), x[2]); };
+  Case c("contact");
+  c.use(together(block_mesh(disc), block_mesh(pad)), {Fidelity::rigid, Fidelity::rigid});
+  c.write("scene.toml",
+          "[material.m]\nE = 1e9\nnu = 0\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n"
+          "[[motion]]\nkind = \"rotation\"\nname = \"drive\"\non = \"disc\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\nangle = 2\n"
+          "history = {t = [0, 0.2, 1], value = [0, 0, 1]}\n[[contact]]\nname = \"c\"\na = \"disczmax\"\nb = \"padzmin\"\nfriction = 0.4\n"
+          "modulus = 1e9\nlayer = 0.02\n[[joint]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"ground\"\nb = \"pad\"\nat = [0.15, 0, "
+          "0.02]\naxis = [0, 0, 1]\n[[load]]\nkind = \"pressure\"\nname = \"p\"\non = \"padzmax\"\npressure = 1000\n"
+          "history = {t = [0, 0.2, 1], value = [0, 1, 1]}\n[time]\nend = 1\nstep = 0.02\n");
+  succeeded(c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
+  const Results r(c / "run.h5");
+  const double across = 400 * (0.04 - 0.01) * std::sin(0.3), torque = 400 * 0.6 * (0.008 - 0.001) / 3;
+  for (const double t : {0.4, 0.6, 0.8, 1.0}) {
+    const Eigen::VectorXd f = r.at("contact/c", t);
+    EXPECT_NEAR(f[1], across, 0.01 * across) << t;
+    EXPECT_NEAR(f[0], 0, 0.03 * across) << t;
+  }
+  EXPECT_NEAR((r.at("contact/c", 1)[6] - r.at("contact/c", 0.4)[6]) / 1.5, torque, 0.01 * torque) << "work over the angle";
+}
+
 }  // namespace
 }  // namespace hilo::test::moved_test
