@@ -302,9 +302,7 @@ TEST_F(ImportFolds, ABlockHasAName) {
     EXPECT_NEAR(f[f.size() - 4], -0.01, 1e-8);
   }
   place.write("w.toml", scene + "\"block_99\"\n");
-  const auto wrong = place.run("hilo-solve --quiet w.toml out.h5 -o w.h5");
-  EXPECT_EQ(wrong.exit, 2);
-  EXPECT_NE(wrong.err.find("no region, set or body \"block_99\""), std::string::npos) << wrong.err;
+  expect_end(place.run("hilo-solve --quiet w.toml out.h5 -o w.h5"), 2, "no region, set or body \"block_99\"");
 }
 
 // One of three linear regions that are one body moves at the start: it took the whole body along.

@@ -321,9 +321,7 @@ TEST_F(ImportGmsh, WrongFilesAreNamedAndLeaveNothing) {
   EXPECT_EQ(ran.err.rfind("hilo-import: cut.msh", 0), 0u) << ran.err;
   EXPECT_EQ(place.files(), before);
   place.write("b.geo", "Point(1) = {0,0,0\n");
-  const auto syntax = place.run("hilo-import b.geo -o a.h5");
-  EXPECT_EQ(syntax.exit, 2);
-  EXPECT_NE(syntax.err.find("b.geo"), std::string::npos) << syntax.err;
+  expect_end(place.run("hilo-import b.geo -o a.h5"), 2, "b.geo");
 }
 
 TEST_F(ImportGmsh, CellsInNoGroupAreARegionAndThatIsSaid) {

@@ -313,9 +313,7 @@ TEST_F(ImportInpRows, ParametersStandForNumbers) {
     refused("a.inp -o b.h5", 2, message);
   }
   place.write("a.inp", "*PARAMETER\na = 1\n" + bar + held + statics + "*CLOAD\n9, 1, <A>\n" + end);
-  const auto ran = place.run("hilo-import a.inp -o b.h5");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("no parameter \"A\" so far (*PARAMETER gives it before)"), std::string::npos) << ran.err;
+  expect_end(place.run("hilo-import a.inp -o b.h5"), 2, "no parameter \"A\" so far (*PARAMETER gives it before)");
 }
 
 // Truth: a cube of 1 m; one node on an edge stands so far inside that a corner is inside out.

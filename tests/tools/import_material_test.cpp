@@ -35,9 +35,7 @@ TEST_F(ImportMaterial, AYieldTableAndItsRatesReachTheScene) {
   EXPECT_NEAR(m.region_data[0].density, 7850, 1e-9);
   expect_said("(j2) stands in the scene lines alone");
   place.write("own.toml", "[time]\nend = 1\nstep = 0.1\n");
-  const auto ran = place.run("hilo-solve own.toml out.h5");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("region \"all\" has no "), std::string::npos) << ran.err;
+  expect_end(place.run("hilo-solve own.toml out.h5"), 2, "region \"all\" has no ");
 }
 
 TEST_F(ImportMaterial, TheSceneNamesItsMeshTheFirstTimeToo) {

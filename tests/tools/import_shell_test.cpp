@@ -84,11 +84,8 @@ TEST_F(ImportShell, GroupsOfSurfacesHaveTheirOwnThicknessBesideSolids) {
   refused("room.geo -o a.h5 --thickness wal=0.1", 1, "--thickness wal=0.1: no group of surfaces has this name (did you mean \"wall\"?)");
   refused("room.geo -o a.h5 --thickness wall=0.1 --thickness wall=0.2", 1, "--thickness wall=0.2: stated twice (see hilo-import --help)");
   refused("room.geo -o a.h5 --thickness wall=", 1, "--thickness wall=: expected T or NAME=T (see hilo-import --help)");
-  const auto twice = place.run("hilo-import room.geo -o a.h5 --thickness thin=0.1 --thickness foot=0.1");
-  EXPECT_EQ(twice.exit, 1);
-  EXPECT_NE(twice.err.find("is in two groups that become shells, \"foot\" the second (name one of them: --thickness NAME=T)"),
-            std::string::npos)
-      << twice.err;
+  expect_end(place.run("hilo-import room.geo -o a.h5 --thickness thin=0.1 --thickness foot=0.1"), 1,
+             "is in two groups that become shells, \"foot\" the second (name one of them: --thickness NAME=T)");
   // msh 2 lists an element once for each of its groups
   const std::string nodes = "$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$EndNodes\n",
                     names = "$PhysicalNames\n2\n2 1 \"plate\"\n2 2 \"foot\"\n$EndPhysicalNames\n",
@@ -330,9 +327,7 @@ TEST_F(ImportShell, ThicknessesAtCornersTaperAStrip) {
   for (const auto& [entry, why] : {std::pair{"CQUAD4,1,7,1,3,4,2,,,+\n+,,,.1,-.1,.1,.1\n", "CQUAD4 1: T2 -0.1 is not above 0"},
                                    std::pair{"CQUAD4,1,7,1,3,4,2,,,+\n+,,2,.1\n", "CQUAD4 1: TFLAG 2 is neither 0 nor 1"}}) {
     place.write("bad.bdf", head + entry);
-    const auto ran = place.run("hilo-import bad.bdf -o bad.h5");
-    EXPECT_EQ(ran.exit, 2);
-    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+    expect_end(place.run("hilo-import bad.bdf -o bad.h5"), 2, why);
   }
 }
 

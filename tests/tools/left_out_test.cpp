@@ -41,8 +41,7 @@ TEST_F(LeftOut, IsToldByImportAndBeforeTheRunAlsoWhenQuietAndIsInRunJson) {
   EXPECT_NE(said.find("hilo-solve: warning: s.toml:"), std::string::npos) << said;
   EXPECT_NE(said.find("import left out *TEMPERATURE (2, a.inp:36)\n"), std::string::npos) << said;
   const std::string json = test::text_of(place / "run.json");
-  EXPECT_NE(json.find(R"("left_out": [{"loss": "load", "card": "*TEMPERATURE", "count": 2, "place": "a.inp:36"}])"), std::string::npos)
-      << json;
+  expect_words(json, R"("left_out": [{"loss": "load", "card": "*TEMPERATURE", "count": 2, "place": "a.inp:36"}])");
 }
 
 TEST_F(LeftOut, ATieThatWasLostIsRefusedUnlessAccepted) {
@@ -132,8 +131,7 @@ TEST_F(LeftOut, ASolidThatNothingHoldsOrTouchesIsNamedAtImportAndBeforeARun) {
       "1 of 2 solids share no node with another, and nothing of the deck holds, moves, loads or ties them: \"lid\" (from "
       "cell 11 on)");
   const auto ran = succeeded(place.run("hilo-solve s.toml -o run.h5"));
-  EXPECT_NE(ran.err.find("warning: \"lid\", about (0.5, 0.5, 5.5) m: nothing holds, moves, loads or touches it"), std::string::npos)
-      << ran.err;
+  expect_words(ran.err, "warning: \"lid\", about (0.5, 0.5, 5.5) m: nothing holds, moves, loads or touches it");
   EXPECT_EQ(ran.err.find("\"bar\", about"), std::string::npos) << ran.err;
   for (const char* how : {"--rigid lid --nonlinear bar", "--rigid bar --nonlinear lid", "--rigid bar --rigid lid"}) {
     ASSERT_EQ(place.run("hilo-tag out.h5 -o tags.h5 " + std::string(how)).exit, 0) << how;

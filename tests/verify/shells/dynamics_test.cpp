@@ -172,8 +172,7 @@ TEST_F(ShellDynamics, WhatHasNoClearThicknessIsRefusedByName) {
     use(m);
     work.write("scene.toml", shell_of(2e7, 0.3) + in_steps(1));
     const Ran r = work.run("hilo-solve scene.toml mesh.h5 -o no.h5");
-    EXPECT_EQ(r.exit, 2) << r.err;
-    EXPECT_NE(r.err.find(why), std::string::npos) << r.err;
+    expect_end(r, 2, why);
     EXPECT_NE(r.err.find("scene.toml:7:"), std::string::npos) << r.err;
   };
   refused(shell_mesh(plate(1, 1), 10, 10, 0.2, 2), "region \"shell\": the thickness of the cell at (0.05, 0.05, -0.05) is not clear");

@@ -104,8 +104,7 @@ TEST(WholeRegionRefused, AMassAtAPointOfAFlexibleRegion) {
                            "name = \"m\"\non = \"{}\"\nmass = 5\nat = [0.1, 0.05, 0.05]\n[time]\nend = 0.01\nstep = 1e-3\n",
                            on));
     const Ran ran = work.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5");
-    EXPECT_EQ(ran.exit, 2);
-    EXPECT_NE(ran.err.find("scene.toml:11:1"), std::string::npos) << ran.err;
+    expect_end(ran, 2, "scene.toml:11:1");
     EXPECT_NE(ran.err.find("is flexible, its nodes share the mass"), std::string::npos) << ran.err;
   }
 }
