@@ -146,12 +146,13 @@ struct FlyingBar {
   bool hinge = true;
 };
 std::string flying_bar(const Workplace& w, const FlyingBar& c) {
-  BlockOptions o;
-  o.shape = c.shape, o.n[0] = 2;
-  o.high = Vec3(0.5, c.width, c.width);
-  o.regions = {"bar", "head"};
-  o.region_of = [](const Vec3& x) { return x[0] > 0.25 ? 1 : 0; };
-  write_mesh(w / "mesh.h5", block_mesh(o), {"test"});
+  write_mesh(w / "mesh.h5",
+             block_mesh({.shape = c.shape,
+                         .n = {2, 1, 1},
+                         .high = Vec3(0.5, c.width, c.width),
+                         .regions = {"bar", "head"},
+                         .region_of = [](const Vec3& x) { return x[0] > 0.25 ? 1 : 0; }}),
+             {"test"});
   write_tags(w / "tags.h5", w / "mesh.h5", {Fidelity::nonlinear, c.head ? Fidelity::rigid : Fidelity::nonlinear}, {"test"});
   std::string text = "[material.m]\n" + c.law + "\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n" +
                      fmt::format("[[initial]]\non = [\"bar\", \"head\"]\nvelocity = [1, 2, 3]\nspin = [{}, {}, {}]\n", 3 * c.spin,

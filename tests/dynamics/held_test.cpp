@@ -17,11 +17,7 @@ std::string hold(const std::string& kind, const std::string& more = "") {
 
 class Held : public testing::Test {
  protected:
-  Held() {
-    BlockOptions o;
-    o.n[0] = o.n[1] = o.n[2] = 3;
-    write_mesh(place / "block.h5", block_mesh(o), {"test"});
-  }
+  Held() { write_mesh(place / "block.h5", block_mesh({.n = {3, 3, 3}}), {"test"}); }
   /// Exit code and message of a run.
   Ran run(const std::string& scene, const std::string& mesh = "block.h5") {
     place.write("scene.toml", "mesh = \"" + mesh + "\"\n" + scene);

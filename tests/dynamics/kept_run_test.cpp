@@ -52,11 +52,8 @@ std::string machine(bool with_motion = true) {
 
 /// A bar, partly rigid, of a material with damping, on a hinge with a body: written as mesh.h5 and tags.h5.
 std::string bar(const std::filesystem::path& folder, const std::string& law, Fidelity block = Fidelity::nonlinear) {
-  BlockOptions o;
-  o.n[0] = 6, o.n[1] = 1, o.n[2] = 1;
-  o.high = Vec3(1.2, 0.2, 0.2);
-  o.regions = {"foot", "block"};
-  o.region_of = [](const Vec3& x) { return x[0] < 0.3 ? 0 : 1; };
+  const BlockOptions o{
+      .n = {6, 1, 1}, .high = {1.2, 0.2, 0.2}, .regions = {"foot", "block"}, .region_of = [](const Vec3& x) { return x[0] < 0.3 ? 0 : 1; }};
   if (Comm::world().rank == 0) {
     Mesh mesh = block_mesh(o);
     add_node_set(mesh, "edge", [](const Vec3& x) { return x[0] > 1.19 && x[2] < 0.01; });
@@ -142,9 +139,7 @@ TEST(KeptRun, GoesOnWithEachOfTheSerialSolvers) {
 
 TEST(KeptRun, GoesOnInAStaticAnalysis) {
   const Folder folder;
-  BlockOptions o;
-  o.n[0] = 2;
-  write_mesh(folder / "mesh.h5", block_mesh(o), {"test"});
+  write_mesh(folder / "mesh.h5", block_mesh({.n = {2, 1, 1}}), {"test"});
   std::string scene = text_of(std::string(HILO_SOURCE) + "/tests/verify/plasticity/uniaxial.toml");
   const RunReport report = expect_goes_on(folder.path(), scene, "mesh.h5", {1, 7, 8, 20}, {"solver.iterations=3", "solver.cuts=20"});
   EXPECT_GT(report.cuts, 0);
@@ -153,9 +148,7 @@ TEST(KeptRun, GoesOnInAStaticAnalysis) {
 
 TEST(KeptRun, GoesOnOnAPath) {
   const Folder folder;
-  BlockOptions o;
-  o.n[0] = 4, o.high = Vec3(4, 1, 1);
-  write_mesh(folder / "mesh.h5", block_mesh(o), {"test"});
+  write_mesh(folder / "mesh.h5", block_mesh({.n = {4, 1, 1}, .high = {4, 1, 1}}), {"test"});
   const std::string scene =
       "[material.m]\n" + metal + "E = 1e6\nnu = 0.3\ndensity = 1\n[region.\"*\"]\nmaterial = \"m\"\n" +
       "[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n" +

@@ -38,9 +38,7 @@ double growth(int who, Small small, Large large) {
 /// n springs to the ground at as many nodes of a block of 8000 hexahedra, each node a set.
 struct Springs {
   explicit Springs(int n) {
-    BlockOptions o;
-    o.n[0] = o.n[1] = o.n[2] = 20;
-    Mesh mesh = block_mesh(o);
+    Mesh mesh = block_mesh({.n = {20, 20, 20}});
     text = "[material.m]\nE = 1e9\nnu = 0.3\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n[time]\nanalysis = \"static\"\n";
     for (int i = 0; i < n; ++i) {
       const std::string name = "n" + std::to_string(i);

@@ -14,8 +14,7 @@ namespace {
 class LongestShare : public testing::TestWithParam<Shape> {
  protected:
   void SetUp() override {
-    BlockOptions o;
-    o.shape = GetParam();
+    const BlockOptions o{.shape = GetParam()};
     std::fill(o.n, o.n + 3, 2);
     write_mesh(place / "mesh.h5", block_mesh(o), {"test"});
     local = read_local_mesh(place / "mesh.h5", Comm::world());

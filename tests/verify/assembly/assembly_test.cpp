@@ -38,10 +38,7 @@ TEST(Assembly, MovesAsLittleAsTheMassesSay) {
 // cells next to the joint.
 TEST(Assembly, TurnsAnElasticBeamAsAWhole) {
   Case c("assembly");
-  BlockOptions o;
-  o.n[0] = 12, o.n[1] = 1, o.n[2] = 1;
-  o.high = Vec3(1, 0.05, 0.05);
-  const Mesh mesh = block_mesh(o);
+  const Mesh mesh = block_mesh({.n = {12, 1, 1}, .high = {1, 0.05, 0.05}});
   c.use(mesh);
   const Results r = c.solved("--set output.interval=0.01", "run.h5", "beam");
   const Vec3 at(0, 0.025, 0.025);

@@ -161,10 +161,7 @@ TEST_F(BeamStatics, PrincetonsBeamIsThatOfAnsys) {
 
 // On a face of a block of each fidelity; rigid is the least compliant.
 TEST_F(BeamStatics, ABeamRidesOnASetOfARegionOfEveryFidelity) {
-  BlockOptions o;
-  o.n[2] = 4;
-  o.high = Vec3(0.2, 0.2, 1);
-  write_mesh(work / "mesh.h5", block_mesh(o), {"test"});
+  write_mesh(work / "mesh.h5", block_mesh({.n = {1, 1, 4}, .high = {0.2, 0.2, 1}}), {"test"});
   const std::string text =
       "gravity = [0, 0, -9.81]\n[material.m]\nE = 2e9\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n"
       "[section.s]\nkind = \"box\"\nwidth = 0.05\nheight = 0.03\nthickness = 0.004\n" +

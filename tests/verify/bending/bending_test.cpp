@@ -17,8 +17,7 @@ Vec3 tip_of(const Mesh& m, const std::string& options) {
 }
 
 Mesh beam(Shape shape, const int (&n)[3], const Vec3& size, double skew = 0) {
-  BlockOptions o;
-  o.shape = shape;
+  BlockOptions o{.shape = shape};
   for (int i = 0; i < 3; ++i) o.n[i] = n[i];
   o.high = size;
   if (skew != 0)  // inner cross-sections lean to and fro: trapezoids
@@ -88,12 +87,11 @@ TEST(Bending, TrapezoidsLoseLessThanAFifth) {
 // width 0.005424, along its thickness 0.001754.  Peers' hexahedra: 0.986 to 1.052 of these.
 TEST(Bending, TwistedBeamIsAsMacNealAndHarderHaveIt) {
   for (const auto& [shape, low, high] : {std::tuple{Shape::hex8, 0.97, 1.03}, {Shape::hex20, 0.98, 1.06}}) {
-    BlockOptions o;
-    o.shape = shape;
-    o.n[0] = shape == Shape::hex8 ? 24 : 12, o.n[1] = shape == Shape::hex8 ? 4 : 2, o.n[2] = shape == Shape::hex8 ? 2 : 1;
-    o.low = Vec3(0, -0.55, -0.16), o.high = Vec3(12, 0.55, 0.16);
-    o.map = [](const Vec3& x) { return Vec3(Eigen::AngleAxisd(M_PI / 2 * x[0] / 12, Vec3::UnitX()) * x); };
-    Mesh m = block_mesh(o);
+    Mesh m = block_mesh({.shape = shape,
+                         .n = {shape == Shape::hex8 ? 24 : 12, shape == Shape::hex8 ? 4 : 2, shape == Shape::hex8 ? 2 : 1},
+                         .low = {0, -0.55, -0.16},
+                         .high = {12, 0.55, 0.16},
+                         .map = [](const Vec3& x) { return Vec3(Eigen::AngleAxisd(M_PI / 2 * x[0] / 12, Vec3::UnitX()) * x); }});
     add_node_set(m, "tip", [](const Vec3& x) { return std::abs(x[0] - 12) < 1e-9; });
     const std::string steel = "--set material.solid.E=29e6 --set material.solid.nu=0.22 --set load.end.force=";
     // after the twist the width of the tip section, y at the root, lies along z
@@ -110,10 +108,8 @@ TEST(Bending, TwistedBeamIsAsMacNealAndHarderHaveIt) {
 // the state of plane strain (held in z on both faces), as solids4foam has it.
 TEST(Bending, CooksMembraneIsThatOfItsPeers) {
   for (const auto& [shape, n] : {std::pair{Shape::hex8, 24}, {Shape::hex20, 12}, {Shape::tet10, 14}, {Shape::wedge15, 14}}) {
-    BlockOptions o;
-    o.shape = shape;
-    o.n[0] = o.n[1] = n;
-    o.map = [](const Vec3& s) { return Vec3(48 * s[0], 44 * s[0] + s[1] * (44 - 28 * s[0]), s[2]); };
+    const BlockOptions o{
+        .shape = shape, .n = {n, n, 1}, .map = [](const Vec3& s) { return Vec3(48 * s[0], 44 * s[0] + s[1] * (44 - 28 * s[0]), s[2]); }};
     Mesh m = block_mesh(o);
     add_node_set(m, "corner", [](const Vec3& x) { return std::abs(x[0] - 48) < 1e-9 && std::abs(x[1] - 60) < 1e-9; });
     add_node_set(m, "middle", [](const Vec3& x) { return std::abs(x[0] - 48) < 1e-9 && std::abs(x[1] - 52) < 1e-9; });
@@ -168,9 +164,7 @@ double elastic_energy(Case& c, const Mesh& m, const std::string& scene, std::str
 /// Half a pipe bent by 90 degrees about a radius of 3, of radius 1 and wall 1/20, one cell through the wall, clamped at one end, pulled at
 /// the other; its energy over that of the converged mesh.
 double pipe_ratio(Shape shape, int around, int along, std::string* talk = nullptr) {
-  BlockOptions o;
-  o.shape = shape;
-  o.n[0] = along, o.n[1] = around, o.n[2] = 1;
+  const BlockOptions o{.shape = shape, .n = {along, around, 1}};
   const Mesh m = curved_block(o, [](const Vec3& s) {
     const double bend = M_PI / 2 * s[0], turn = M_PI * s[1], r = 1 + 0.05 * (s[2] - 0.5), R = 3 + r * std::cos(turn);
     return Vec3(R * std::sin(bend), R * std::cos(bend), -r * std::sin(turn));
@@ -218,9 +212,7 @@ TEST(Bending, ThickTubeConvergesWithTheFourthPower) {
     for (const double nu : {0.3, 0.4999}) {
       double error[2];
       for (int k = 0; k < 2; ++k) {
-        BlockOptions o;
-        o.shape = shape;
-        o.n[0] = 2 << k, o.n[1] = 3 << k;
+        const BlockOptions o{.shape = shape, .n = {2 << k, 3 << k, 1}};
         const Mesh m = curved_block(o, [&](const Vec3& s) {
           const double r = a + (b - a) * s[0], t = M_PI / 2 * s[1];
           return Vec3(r * std::sin(t), -r * std::cos(t), s[2]);
@@ -244,9 +236,7 @@ TEST(Bending, ThickTubeConvergesWithTheFourthPower) {
 TEST(Bending, SkewedAndLinearCellsAreToldByRegion) {
   const Vec3 size(10, 1, 1);
   const auto talk_of = [&](Shape shape, double moved) {
-    BlockOptions o;
-    o.shape = shape;
-    o.n[0] = 10, o.n[1] = o.n[2] = 2, o.high = size;
+    BlockOptions o{.shape = shape, .n = {10, 2, 2}, .high = size};
     o.map = [=](const Vec3& x) {
       Vec3 y = x;
       const int at[3] = {static_cast<int>(std::lround(x[0])), static_cast<int>(std::lround(2 * x[1])),
@@ -278,9 +268,7 @@ TEST(Bending, SkewedAndLinearCellsAreToldByRegion) {
 // Truth: S l = Y l (l^2 - 1)/2 falls below l = 1/sqrt 3 = .577; the warning comes there, once, and not before.
 TEST(Compression, BeyondWhatALawOrACellStandsForIsTold) {
   const auto talk_of = [](Shape shape, const std::string& kind, double pressed) {
-    BlockOptions o;
-    o.shape = shape;
-    for (int& n : o.n) n = 2;
+    const BlockOptions o{.shape = shape, .n = {2, 2, 2}};
     Mesh m = block_mesh(o);
     add_node_set(m, "tip", [](const Vec3& x) { return x.norm() < 1e-9; });
     Case c("bending");

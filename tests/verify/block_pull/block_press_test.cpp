@@ -26,8 +26,7 @@ TEST(BlockPress, InFourStepsTakesFewIterationsAndEndsWhereManyStepsDo) {
                                         Press{Shape::hex20r, 0.3, 10}, Press{Shape::hex20r, 0.499, 14}, Press{Shape::hex20r, 0.4999, 34}}) {
     SCOPED_TRACE(std::string(info(shape).name) + " " + std::to_string(nu));
     Case c("block_pull");
-    BlockOptions o;
-    o.shape = shape, o.n[0] = o.n[1] = o.n[2] = 6;
+    const BlockOptions o{.shape = shape, .n = {6, 6, 6}};
     c.use(block_mesh(o));
     c.write("scene.toml", scene);
     const std::string law = " --set material.rubber.nu=" + std::to_string(nu);

@@ -8,9 +8,7 @@ namespace hilo::test::block_pull_test {
 namespace {
 
 BlockOptions block() {
-  BlockOptions o;
-  o.n[0] = 8, o.n[1] = 2, o.n[2] = 2;
-  o.low = Vec3(-2, 0, 0), o.high = Vec3(2, 1, 1);
+  const BlockOptions o{.n = {8, 2, 2}, .low = {-2, 0, 0}, .high = {2, 1, 1}};
   return o;
 }
 constexpr double exact = 4 * (0.05 + 1.001249219725039 - 1);  // l = 0.05 + sqrt(0.05^2 + 1)

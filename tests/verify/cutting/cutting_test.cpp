@@ -7,9 +7,7 @@ namespace hilo::test::cutting_test {
 namespace {
 
 BlockOptions bar() {
-  BlockOptions o;
-  o.n[0] = 4;
-  o.high = Vec3(1, 0.1, 0.1);
+  const BlockOptions o{.n = {4, 1, 1}, .high = {1, 0.1, 0.1}};
   return o;
 }
 

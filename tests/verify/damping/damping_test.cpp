@@ -6,12 +6,7 @@
 namespace hilo::test::damping_test {
 namespace {
 
-Mesh bar() {
-  BlockOptions o;
-  o.n[0] = 4;
-  o.high = Vec3(1, 0.1, 0.1);
-  return block_mesh(o);
-}
+Mesh bar() { return block_mesh({.n = {4, 1, 1}, .high = {1, 0.1, 0.1}}); }
 
 void expect_decay(const std::string& options) {
   Case c("damping");

@@ -80,8 +80,8 @@ class EveryDamping : public testing::TestWithParam<One> {
   std::string solve(const std::string& time, const std::string& fidelity) {
     const One& one = GetParam();
     const bool is_block = one.fidelity.empty();
-    BlockOptions o;
-    o.low = is_block ? Vec3(-0.1, -0.1, -0.1) : Vec3(0, -0.5, -0.5), o.high = is_block ? Vec3(0.1, 0.1, 0.1) : Vec3(1, 0.5, 0.5);
+    const BlockOptions o{.low = is_block ? Vec3(-0.1, -0.1, -0.1) : Vec3(0, -0.5, -0.5),
+                         .high = is_block ? Vec3(0.1, 0.1, 0.1) : Vec3(1, 0.5, 0.5)};
     write_mesh(work / "mesh.h5", block_mesh(o), {"test"});
     work.run("hilo-tag --quiet mesh.h5 --" + fidelity + " block -o tags.h5");
     work.write(
@@ -163,10 +163,10 @@ class ModalDamping : public testing::Test {
  protected:
   std::vector<double> ratios(const std::string& scene, int wanted, const Vec3& size = {1, 0.03, 0.04}, bool two = false,
                              const std::string& keys = "") {
-    BlockOptions o;
-    o.shape = Shape::hex20r;
-    o.n[0] = 8;
-    o.low = Vec3(0, -size[1] / 2, -size[2] / 2), o.high = Vec3(size[0], size[1] / 2, size[2] / 2);
+    const BlockOptions o{.shape = Shape::hex20r,
+                         .n = {8, 1, 1},
+                         .low = Vec3(0, -size[1] / 2, -size[2] / 2),
+                         .high = Vec3(size[0], size[1] / 2, size[2] / 2)};
     Mesh mesh = block_mesh(o);
     if (two) {  // the same once more behind it, with nodes of its own
       BlockOptions p = o;

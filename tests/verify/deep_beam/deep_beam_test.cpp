@@ -6,11 +6,7 @@ namespace hilo::test::deep_beam_test {
 namespace {
 
 Mesh beam(Shape shape, int along) {
-  BlockOptions o;
-  o.shape = shape;
-  o.n[0] = along, o.n[1] = 2, o.n[2] = 2;
-  o.low = Vec3(0, -1, -1), o.high = Vec3(10, 1, 1);
-  Mesh m = block_mesh(o);
+  Mesh m = block_mesh({.shape = shape, .n = {along, 2, 2}, .low = {0, -1, -1}, .high = {10, 1, 1}});
   const auto near = [](double a, double b) { return std::abs(a - b) < 1e-9; };
   add_node_set(m, "axis A", [&](const Vec3& x) { return near(x[0], 0) && near(x[1], 0); });  // the neutral line of the end faces
   add_node_set(m, "axis B", [&](const Vec3& x) { return near(x[0], 10) && near(x[1], 0); });

@@ -8,11 +8,7 @@ namespace {
 
 void expect_tip(Shape shape, int along, const std::string& law) {
   Case c("elastica");
-  BlockOptions o;
-  o.shape = shape;
-  o.n[0] = along;
-  o.high = Vec3(10, 1, 0.1);
-  c.use(block_mesh(o));
+  c.use(block_mesh({.shape = shape, .n = {along, 1, 1}, .high = {10, 1, 0.1}}));
   const Results r = c.solved("--set 'material.strip.kind=\"" + law + "\"'");
   const Vec3 u = r.at("probe/tip", 1).head<3>() - Vec3(10, 0.5, 0.05);
   EXPECT_NEAR(-u[0], 3.28946, 0.005 * 3.28946) << info(shape).name << " " << law;

@@ -16,15 +16,15 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(FreeFall, EveryNodeFallsAsGalileiSays) {
   const auto [shape, fidelity] = GetParam();
   Case c("free_fall");
-  BlockOptions o;
-  o.shape = shape;
-  o.n[0] = 2, o.n[1] = 1, o.n[2] = 1;
-  o.high = Vec3(0.4, 0.2, 0.1);
-  o.map = [](const Vec3& x) {
-    return Vec3(x +
-                0.02 * Vec3(scatter(std::lround(100 * x[0])), scatter(std::lround(77 * x[1])), scatter(std::lround(99 * x[2] + 7 * x[0]))));
-  };
-  c.use(block_mesh(o), {fidelity});
+  c.use(block_mesh({.shape = shape,
+                    .n = {2, 1, 1},
+                    .high = {0.4, 0.2, 0.1},
+                    .map =
+                        [](const Vec3& x) {
+                          return Vec3(x + 0.02 * Vec3(scatter(std::lround(100 * x[0])), scatter(std::lround(77 * x[1])),
+                                                      scatter(std::lround(99 * x[2] + 7 * x[0]))));
+                        }}),
+        {fidelity});
   const Results r = c.solved();
   const Vec3 v(3, -1, 2), g(1, 2, -9.81);
   for (const std::string& step : r.steps()) {

@@ -10,10 +10,7 @@ TEST(Laws, OfRubberAndWoodKeepEnergyAndMomentaOfATumblingBar) {
   for (const Shape shape : {Shape::hex8, Shape::tet10, Shape::hex20r})
     for (const char* law : {"rubber", "nearly_incompressible", "ogden", "wood"}) {
       Case c("laws");
-      BlockOptions o;
-      o.shape = shape;
-      o.n[0] = 4, o.high = Vec3(1, 0.1, 0.1);
-      c.use(block_mesh(o));
+      c.use(block_mesh({.shape = shape, .n = {4, 1, 1}, .high = {1, 0.1, 0.1}}));
       const std::string shorter = shape == Shape::hex8 ? "" : " --set time.end=0.4";
       const Results r = c.solved(std::string("--set 'region.block.material=\"") + law + "\"'" + shorter, "run.h5", "tumbling");
       const auto e = r.history("energy"), p = r.history("momentum");
@@ -31,9 +28,7 @@ TEST(Laws, OfRubberAndWoodKeepEnergyAndMomentaOfATumblingBar) {
 TEST(Laws, BeamOfWoodBendsByItsOwnModuli) {
   for (const bool along : {true, false}) {
     Case c("laws");
-    BlockOptions o;
-    o.n[0] = 20, o.high = Vec3(1, 0.05, 0.05);
-    Mesh m = block_mesh(o);
+    Mesh m = block_mesh({.n = {20, 1, 1}, .high = {1, 0.05, 0.05}});
     add_node_set(m, "foot", [](const Vec3& x) { return std::abs(x[0]) < 1e-9; });
     c.use(m);
     const Results r =

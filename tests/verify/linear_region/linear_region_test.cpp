@@ -11,11 +11,7 @@ namespace hilo::test::linear_region_test {
 namespace {
 
 Mesh bar(double from, double to, int n, Shape shape = Shape::hex8) {
-  BlockOptions o;
-  o.shape = shape;
-  o.n[0] = n;
-  o.low = Vec3(from, 0, 0), o.high = Vec3(to, 0.1, 0.1);
-  return block_mesh(o);
+  return block_mesh({.shape = shape, .n = {n, 1, 1}, .low = Vec3(from, 0, 0), .high = Vec3(to, 0.1, 0.1)});
 }
 
 /// Meshes as one, regions and sets under a prefix.
@@ -91,12 +87,8 @@ TEST(DISABLED_LongLinearRegion, OnAHingeWithAnotherKeepsEnergyMomentaAndTheHinge
 }
 
 Mesh bar_of_two_regions() {
-  BlockOptions o;
-  o.n[0] = 6;
-  o.high = Vec3(1, 0.1, 0.1);
-  o.regions = {"near", "far"};
-  o.region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; };
-  return block_mesh(o);
+  return block_mesh(
+      {.n = {6, 1, 1}, .high = {1, 0.1, 0.1}, .regions = {"near", "far"}, .region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; }});
 }
 class Beside : public testing::TestWithParam<std::pair<const char*, Fidelity>> {};
 TEST_P(Beside, AnotherRegionItKeepsEnergyAndMomenta) {
@@ -242,11 +234,8 @@ TEST(LinearRegion, EightTurnFarTogether) {
   std::string scene = "[material.m]\nE = 1e7\nnu = 0\ndensity = 1\n[region.\"*\"]\nmaterial = \"m\"\n";
   const auto point = [](const Vec3& x) { return "[" + std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", 0]"; };
   for (int k = 0; k < n; ++k) {
-    BlockOptions o;
-    o.shape = Shape::hex20r;
-    o.n[0] = 6;
-    o.low = Vec3(k * step, -0.5, -0.5), o.high = Vec3((k + 1) * step, 0.5, 0.5);
-    pieces[k] = block_mesh(o);
+    pieces[k] =
+        block_mesh({.shape = Shape::hex20r, .n = {6, 1, 1}, .low = Vec3(k * step, -0.5, -0.5), .high = Vec3((k + 1) * step, 0.5, 0.5)});
     for (Vec3& x : pieces[k].X) x = at(x[0], R - x[1]) + Vec3(0, 0, x[2]);
     const std::string name = "p" + std::to_string(k) + "_", before = k ? "p" + std::to_string(k - 1) + "_xmax" : "ground";
     parts.emplace_back(&pieces[k], name);

@@ -17,10 +17,7 @@ constexpr double pi = std::numbers::pi, E = 1e9, h = 0.05, L = 1, I = h * h * h 
 class LinearMeasures : public testing::Test {
  protected:
   LinearMeasures() : c("linear_region") {
-    BlockOptions o;
-    o.n[0] = 24, o.n[1] = o.n[2] = 2;
-    o.low = Vec3(0, -h / 2, -h / 2), o.high = Vec3(L, h / 2, h / 2);
-    mesh = block_mesh(o);
+    mesh = block_mesh({.n = {24, 2, 2}, .low = Vec3(0, -h / 2, -h / 2), .high = Vec3(L, h / 2, h / 2)});
   }
   /// Statics of the bar, linear or nonlinear.
   struct Answer {

@@ -25,13 +25,7 @@ TEST_F(Motions, DoNotFeelALoadOnWhatTheyMove) {
 }
 
 /// A steel bar of 1 m with ten cells; sets root and tip.
-Mesh bar() {
-  BlockOptions o;
-  o.n[0] = 10;
-  o.high = Vec3(1, 0.1, 0.1);
-  o.regions = {"bar"};
-  return block_mesh(o);
-}
+Mesh bar() { return block_mesh({.n = {10, 1, 1}, .high = {1, 0.1, 0.1}, .regions = {"bar"}}); }
 
 const std::string steel =
     solid(2e11, 0.3, 7800, "bar") + probe("tip", "xmax") + probe("root", "xmin") + in_time(0.003, 1e-4) + "[output]\ninterval = 0.001\n";

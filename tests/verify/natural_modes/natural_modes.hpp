@@ -27,13 +27,7 @@ class NaturalModes : public ScenePlace {
   Eigen::VectorXd frequencies(const std::string& scene, int wanted) { return modes(scene, wanted).col(0); }
 };
 
-inline Mesh beam(const Vec3& size, int n) {
-  BlockOptions o;
-  o.shape = Shape::hex20r;
-  o.n[0] = n;
-  o.high = size;
-  return block_mesh(o);
-}
+inline Mesh beam(const Vec3& size, int n) { return block_mesh({.shape = Shape::hex20r, .n = {n, 1, 1}, .high = size}); }
 
 /// Timoshenko's beam by its two bending branches would be more than a slender one needs: corrections of order (r/L)^2 are below 2e-4 here.
 inline const double r_z = 0.01 / std::sqrt(12), r_y = 0.015 / std::sqrt(12),

@@ -27,11 +27,7 @@ TEST_F(NaturalModes, OfAFreeBeamAreSixRigidMotionsAndThoseOfItsBeam) {
 
 // All nodes of a face move along its normal alone: Navier's plate, with Mindlin's shear and rotary inertia.
 TEST_F(NaturalModes, OfASupportedPlateAreNavierAndMindlins) {
-  BlockOptions o;
-  o.shape = Shape::hex20r;
-  o.n[0] = o.n[1] = 8;
-  o.high = Vec3(1, 1, 0.02);
-  use(block_mesh(o));
+  use(block_mesh({.shape = Shape::hex20r, .n = {8, 8, 1}, .high = {1, 1, 0.02}}));
   std::string held;
   for (const char* face : {"xmin", "xmax", "ymin", "ymax"})
     held += std::string("[[motion]]\nkind = \"fixed\"\nname = \"") + face + "\"\non = \"" + face + "\"\ncomponents = [\"" +
@@ -52,9 +48,7 @@ TEST_F(NaturalModes, OfASupportedPlateAreNavierAndMindlins) {
 TEST_F(NaturalModes, OfARingAreHoppes) {
   const double R = 1, h = 0.02;
   const int n = 48;
-  BlockOptions o;
-  o.shape = Shape::hex20r;
-  o.n[0] = n;
+  BlockOptions o{.shape = Shape::hex20r, .n = {n, 1, 1}};
   o.low = Vec3(0, R - h / 2, 0), o.high = Vec3(2 * pi, R + h / 2, 2 * h);  // out of its plane it is stiffer
   Mesh m = block_mesh(o);
   for (Vec3& x : m.X) x = Vec3(x[1] * std::cos(x[0]), -x[1] * std::sin(x[0]), x[2]);

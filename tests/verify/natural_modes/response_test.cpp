@@ -92,10 +92,7 @@ TEST_F(NaturalModes, GiveTheSwingOfACantileverOnItsWall) {
 
 // A rod between two ends of which one swings along it: the middle by 1/(2 cos(k L/2)); of both it is 1/cos(k L/2).
 TEST_F(NaturalModes, GiveTheSwingOfARodOnOneOfItsEnds) {
-  BlockOptions o;
-  o.n[0] = 10;
-  o.high = Vec3(1, 0.05, 0.05);
-  use(block_mesh(o));
+  use(block_mesh({.n = {10, 1, 1}, .high = {1, 0.05, 0.05}}));
   modes(
       steel +
           "[[motion]]\nkind = \"fixed\"\nname = \"left\"\non = \"xmin\"\n[[motion]]\nkind = \"fixed\"\nname = \"right\"\non = \"xmax\"\n" +

@@ -11,16 +11,13 @@ class Patch : public testing::TestWithParam<Shape> {
  protected:
   /// 2 x 2 x 2 bricks of 0.5 m, the corners inside the block moved in space, those on a face within it.
   static Mesh mesh() {
-    BlockOptions o;
-    o.shape = GetParam();
-    for (int& n : o.n) n = 2;
-    o.map = [](const Vec3& x) {
-      Vec3 y = x;
-      for (int i = 0; i < 3; ++i)
-        if (std::abs(x[i] - 0.5) < 1e-9) y[i] += 0.12 * scatter(static_cast<int>(std::lround(2 * x[0] + 6 * x[1] + 18 * x[2])) + 40 * i);
-      return y;
-    };
-    return block_mesh(o);
+    return block_mesh({.shape = GetParam(), .n = {2, 2, 2}, .map = [](const Vec3& x) {
+                         Vec3 y = x;
+                         for (int i = 0; i < 3; ++i)
+                           if (std::abs(x[i] - 0.5) < 1e-9)
+                             y[i] += 0.12 * scatter(static_cast<int>(std::lround(2 * x[0] + 6 * x[1] + 18 * x[2])) + 40 * i);
+                         return y;
+                       }});
   }
   static Vec6 voigt(const Mat3& s) {
     Vec6 v;

@@ -11,12 +11,7 @@
 namespace hilo::test::placed_sets_test {
 namespace {
 
-Mesh beam() {
-  BlockOptions o;
-  o.n[0] = 5, o.n[1] = 2, o.n[2] = 2;
-  o.high = Vec3(1, 0.2, 0.2);
-  return block_mesh(o);
-}
+Mesh beam() { return block_mesh({.n = {5, 2, 2}, .high = {1, 0.2, 0.2}}); }
 
 size_t count(const Mesh& m, const std::string& name) { return m.node_sets.contains(name) ? m.node_sets.at(name).size() : 0; }
 
@@ -27,11 +22,9 @@ Mesh with_set(Mesh m, const std::string& keys) {
 
 // A quarter of a pipe of radii 1 and 2, 3 long: 4 x 8 x 3 cells.
 Mesh pipe() {
-  BlockOptions o;
-  o.n[0] = 4, o.n[1] = 8, o.n[2] = 3;
-  o.low = Vec3(1, 0, 0), o.high = Vec3(2, 1, 3);
-  o.map = [](const Vec3& x) { return Vec3(x[0] * std::cos(1.5 * x[1]), x[0] * std::sin(1.5 * x[1]), x[2]); };
-  return block_mesh(o);
+  return block_mesh({.n = {4, 8, 3}, .low = {1, 0, 0}, .high = {2, 1, 3}, .map = [](const Vec3& x) {
+                       return Vec3(x[0] * std::cos(1.5 * x[1]), x[0] * std::sin(1.5 * x[1]), x[2]);
+                     }});
 }
 
 TEST(PlacedSets, NearIsTheSmoothFaceThatAPointLiesOn) {
@@ -114,12 +107,10 @@ TEST(PlacedSets, OfOneNodeAreRefusedOnRanks) {
 
 /// Three blocks in a row, the middle one of cells.
 Mesh row_of_blocks(int across = 2) {
-  BlockOptions o;
-  o.n[0] = 6, o.n[1] = o.n[2] = across;
-  o.high = Vec3(0.6, 0.2, 0.2);
-  o.regions = {"left", "middle", "right"};
-  o.region_of = [](const Vec3& x) { return x[0] < 0.2 ? 0 : x[0] < 0.4 ? 1 : 2; };
-  return block_mesh(o);
+  return block_mesh(
+      {.n = {6, across, across}, .high = {0.6, 0.2, 0.2}, .regions = {"left", "middle", "right"}, .region_of = [](const Vec3& x) {
+         return x[0] < 0.2 ? 0 : x[0] < 0.4 ? 1 : 2;
+       }});
 }
 
 const std::string row_scene = R"(gravity = [0, 0, -9.81]

@@ -13,9 +13,7 @@ TEST(Plasticity, BlockUnderACycleHasTheForceOfTheClosedForm) {
     // steps that are no part of a second end where the history turns all the same
     const std::string steps = shape == Shape::hex8 ? "--set time.steps=7" : "";
     Case c("plasticity");
-    BlockOptions o;
-    o.shape = shape;
-    c.use(block_mesh(o));
+    c.use(block_mesh({.shape = shape}));
     const Results r = c.solved(steps, "run.h5", "uniaxial");
     const auto force = r.history("motion/pull"), energy = r.history("energy");
     double p = 0, ep = 0, worst = 0;
@@ -42,10 +40,7 @@ TEST(Plasticity, BlockUnderACycleHasTheForceOfTheClosedForm) {
 TEST(Plasticity, BarThatTumblesAndYieldsKeepsTheBalanceOfEnergy) {
   for (const Shape shape : {Shape::hex8, Shape::hex20r, Shape::tet10}) {
     Case c("plasticity");
-    BlockOptions o;
-    o.shape = shape;
-    o.n[0] = 6, o.high = Vec3(1, 0.1, 0.1);
-    Mesh m = block_mesh(o);
+    Mesh m = block_mesh({.shape = shape, .n = {6, 1, 1}, .high = {1, 0.1, 0.1}});
     add_node_set(m, "middle", [](const Vec3& x) { return std::abs(x[0] - 0.5) < 0.1; });
     c.use(m);
     const Results r = c.solved(shape == Shape::hex8 ? "--set time.end=0.6" : "--set time.end=0.1", "run.h5", "tumbling");
@@ -62,10 +57,7 @@ TEST(Plasticity, BarThatTumblesAndYieldsKeepsTheBalanceOfEnergy) {
 // Truth: the same over 10 000 steps, some 50 turns of two wedges, whose four points cost least; many steps are cut.
 TEST(Plasticity, BalanceOfEnergyHoldsOverTenThousandSteps) {
   Case c("plasticity");
-  BlockOptions o;
-  o.shape = Shape::wedge6;
-  o.high = Vec3(0.3, 0.1, 0.1);
-  Mesh m = block_mesh(o);
+  Mesh m = block_mesh({.shape = Shape::wedge6, .high = {0.3, 0.1, 0.1}});
   add_node_set(m, "middle", [](const Vec3& x) { return x[0] > 0.29 && x[1] > 0.09; });
   c.use(m);
   setenv("HILO_LANES", "2", 1);  // both cells at once
@@ -126,14 +118,10 @@ TEST(Plasticity, PathOfPlaneStrainIsThatOfAReturnMap) {
 // here at a hundredth of loads and yield stress, since the theory is of small strain.
 TEST(Plasticity, ThickCylinderWidensAsHillSays) {
   Case c("plasticity");
-  BlockOptions o;
-  o.shape = Shape::hex20r;
-  o.n[0] = 8, o.n[1] = 12, o.high = Vec3(1, 1, 0.1);
-  o.map = [](const Vec3& s) {
-    const double r = 0.1 + 0.1 * s[0], a = M_PI / 2 * s[1];
-    return Vec3(r * std::cos(a), r * std::sin(a), 0.1 * s[2]);
-  };
-  Mesh m = block_mesh(o);
+  Mesh m = block_mesh({.shape = Shape::hex20r, .n = {8, 12, 1}, .high = {1, 1, 0.1}, .map = [](const Vec3& s) {
+                         const double r = 0.1 + 0.1 * s[0], a = M_PI / 2 * s[1];
+                         return Vec3(r * std::cos(a), r * std::sin(a), 0.1 * s[2]);
+                       }});
   for (auto& x : m.X)  // middles of the arcs on the circle
     if (const double r = std::hypot(x[0], x[1]), on = std::round(r * 160) / 160; std::abs(r - on) < 6e-4) x[0] *= on / r, x[1] *= on / r;
   const auto near = [](double a) { return std::abs(a) < 1e-9; };
@@ -149,14 +137,10 @@ TEST(Plasticity, ThickCylinderWidensAsHillSays) {
 // Corner 6.9227 mm with 32 x 32 cells of enhanced strain [simo-armero-1992], 6.94 taken as converged; within 1 %.
 TEST(Plasticity, CookMembraneFallsAsPublished) {
   Case c("plasticity");
-  BlockOptions o;
-  o.n[0] = o.n[1] = 32;
-  o.high = Vec3(1, 1, 1e-3);
-  o.map = [](const Vec3& s) {  // mm, in m
-    const double x = 48 * s[0], low = 44 * s[0], high = 44 + 16 * s[0];
-    return Vec3(1e-3 * Vec3(x, low + s[1] * (high - low), 1000 * s[2]));
-  };
-  Mesh m = block_mesh(o);
+  Mesh m = block_mesh({.n = {32, 32, 1}, .high = {1, 1, 1e-3}, .map = [](const Vec3& s) {  // mm, in m
+                         const double x = 48 * s[0], low = 44 * s[0], high = 44 + 16 * s[0];
+                         return Vec3(1e-3 * Vec3(x, low + s[1] * (high - low), 1000 * s[2]));
+                       }});
   add_node_set(m, "corner", [](const Vec3& x) { return x[0] > 0.048 - 1e-9 && x[1] > 0.06 - 1e-9; });
   c.use(m);
   const Results r = c.solved("", "run.h5", "cook");
@@ -167,9 +151,7 @@ TEST(Plasticity, CookMembraneFallsAsPublished) {
 // An integrator that would not carry the plastic strain through its stages is refused, and so is a bar.
 TEST(Plasticity, WhatDoesNotCarryPlasticStrainIsRefused) {
   Case c("plasticity");
-  BlockOptions o;
-  o.n[0] = 2;
-  Mesh m = block_mesh(o);
+  Mesh m = block_mesh({.n = {2, 1, 1}});
   m.node_sets["middle"] = {0};
   c.use(m);
   for (const char* method : {"mid-point", "U0", "V0", "bathe", "radau"}) {

@@ -9,10 +9,7 @@ namespace hilo::test::reduced_file_test {
 namespace {
 
 Mesh bars(int n) {
-  BlockOptions o;
-  o.n[0] = n;
-  o.low = Vec3(0, 0, 0), o.high = Vec3(1, 0.1, 0.1);
-  Mesh left = block_mesh(o);
+  Mesh left = block_mesh({.n = {n, 1, 1}, .low = {0, 0, 0}, .high = {1, 0.1, 0.1}});
   left.region_name = {"left"};
   Mesh out = left;
   out.facet_sets.clear();

@@ -32,12 +32,12 @@ TEST_P(RigidRegion, OfABoxHasTheMassCentreAndInertiaOfTheBox) {
   Mat3 A;
   A << 0.9, 0.2, 0.1, -0.1, 0.5, 0.05, 0.15, -0.05, 0.3;
   const Vec3 at(3, -2, 7);
-  BlockOptions o;
-  o.shape = GetParam();
-  o.n[0] = 3, o.n[1] = 2, o.n[2] = 2;
-  o.low = Vec3::Constant(-0.5), o.high = Vec3::Constant(0.5);
-  o.map = [&](const Vec3& s) { return Vec3(A * s + at); };
-  c.use(block_mesh(o), {Fidelity::rigid});
+  c.use(block_mesh({.shape = GetParam(),
+                    .n = {3, 2, 2},
+                    .low = Vec3::Constant(-0.5),
+                    .high = Vec3::Constant(0.5),
+                    .map = [&](const Vec3& s) { return Vec3(A * s + at); }}),
+        {Fidelity::rigid});
   const Collapsed got = read(c.solved());
   const double m = 7800 * A.determinant();
   EXPECT_NEAR(got.mass, m, 1e-12 * m);
@@ -50,16 +50,11 @@ TEST_P(RigidRegion, OfABoxHasTheMassCentreAndInertiaOfTheBox) {
 TEST(RigidRegionOfTetrahedra, HasTheMassCentreAndInertiaOfItsCells) {
   for (const Shape shape : {Shape::tet4, Shape::tet10}) {
     Case c("rigid_region");
-    BlockOptions o;
-    o.shape = shape;
-    o.n[0] = 3, o.n[1] = 2, o.n[2] = 2;
-    o.high = Vec3(1.5, 0.8, 0.6);
-    o.map = [](const Vec3& x) {
-      return Vec3(x + 0.07 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])),
-                                  scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])),
-                                  scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2]))));
-    };
-    const Mesh m = block_mesh(o);
+    const Mesh m = block_mesh({.shape = shape, .n = {3, 2, 2}, .high = {1.5, 0.8, 0.6}, .map = [](const Vec3& x) {
+                                 return Vec3(x + 0.07 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])),
+                                                             scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])),
+                                                             scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2]))));
+                               }});
     c.use(m, {Fidelity::rigid});
     double volume = 0;
     Vec3 first = Vec3::Zero();
@@ -84,14 +79,11 @@ TEST(RigidRegionOfTetrahedra, HasTheMassCentreAndInertiaOfItsCells) {
 // collapses.
 TEST(RigidRegionOfBentBricks, IsTheSumOfTheirConsistentMassMatrices) {
   Case c("rigid_region");
-  BlockOptions o;
-  for (int& n : o.n) n = 2;
-  o.map = [](const Vec3& x) {
-    return Vec3(x + 0.1 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])),
-                               scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])),
-                               scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2]))));
-  };
-  const Mesh m = block_mesh(o);
+  const Mesh m = block_mesh({.n = {2, 2, 2}, .map = [](const Vec3& x) {
+                               return Vec3(x + 0.1 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])),
+                                                          scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])),
+                                                          scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2]))));
+                             }});
   c.use(m, {Fidelity::rigid});
   double volume = 0, exact_volume = 0;
   Vec3 first = Vec3::Zero();
@@ -124,11 +116,9 @@ TEST(RigidRegionOfBentBricks, IsTheSumOfTheirConsistentMassMatrices) {
 // Truth: rigid regions that share nodes are one body, their union; a region apart is another.
 TEST(RigidRegions, ThatTouchAreOneBodyAndThoseApartAreTwo) {
   Case c("rigid_region");
-  BlockOptions o;
-  o.n[0] = 4;
-  o.high = Vec3(4, 1, 1);
-  o.regions = {"left", "middle", "right"};
-  o.region_of = [](const Vec3& x) { return x[0] < 1 ? 0 : x[0] < 2 ? 1 : 2; };
+  const BlockOptions o{.n = {4, 1, 1}, .high = {4, 1, 1}, .regions = {"left", "middle", "right"}, .region_of = [](const Vec3& x) {
+                         return x[0] < 1 ? 0 : x[0] < 2 ? 1 : 2;
+                       }};
   c.use(block_mesh(o), {Fidelity::rigid, Fidelity::rigid, Fidelity::rigid});
   {
     const Results r = c.solved();

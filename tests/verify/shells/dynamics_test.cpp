@@ -177,9 +177,7 @@ TEST_F(ShellDynamics, WhatHasNoClearThicknessIsRefusedByName) {
   };
   refused(shell_mesh(plate(1, 1), 10, 10, 0.2, 2), "region \"shell\": the thickness of the cell at (0.05, 0.05, -0.05) is not clear");
   refused(shell_mesh(plate(1, 1), 30, 10, 0.06), "between its only two outer faces");
-  BlockOptions o;
-  o.shape = Shape::tet4, o.regions = {"shell"};
-  refused(block_mesh(o), "shells are of hex8, and it has tet4");
+  refused(block_mesh({.shape = Shape::tet4, .regions = {"shell"}}), "shells are of hex8, and it has tet4");
 }
 
 }  // namespace

@@ -12,8 +12,7 @@ double psi(double t) { return t < 15 ? 0.4 * (t * t / 2 + std::pow(7.5 / M_PI, 2
 class SpinUp : public testing::TestWithParam<Fidelity> {};
 TEST_P(SpinUp, TipBendsBackAndIsStretchedAsTheBeamSolution) {
   Case c("spin_up");
-  BlockOptions o;
-  o.n[0] = 20;
+  BlockOptions o{.n = {20, 1, 1}};
   const double h = 0.0774597;
   o.low = Vec3(0, -h / 2, -h / 2), o.high = Vec3(10, h / 2, h / 2);
   c.use(block_mesh(o), {GetParam()});

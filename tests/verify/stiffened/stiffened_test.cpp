@@ -6,12 +6,8 @@ namespace hilo::test::stiffened_test {
 namespace {
 
 Mesh two_regions() {
-  BlockOptions o;
-  o.n[0] = 8, o.n[1] = 2, o.n[2] = 2;
-  o.high = Vec3(1, 0.1, 0.1);
-  o.regions = {"root", "arm"};
-  o.region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; };
-  return block_mesh(o);
+  return block_mesh(
+      {.n = {8, 2, 2}, .high = {1, 0.1, 0.1}, .regions = {"root", "arm"}, .region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; }});
 }
 
 TEST(StiffenedRegion, ApproachesTheRigidOneWithSlopeMinusOne) {

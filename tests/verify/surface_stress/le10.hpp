@@ -11,8 +11,7 @@ namespace hilo::test {
 
 /// A block whose nodes, mid-side ones too, lie where `map` puts them.
 inline Mesh curved(Shape shape, const std::array<int, 3>& n, const std::function<Vec3(const Vec3&)>& map) {
-  BlockOptions o;
-  o.shape = shape;
+  BlockOptions o{.shape = shape};
   for (int i = 0; i < 3; ++i) o.n[i] = n[i];
   Mesh m = block_mesh(o);
   for (Vec3& X : m.X) X = map(X);

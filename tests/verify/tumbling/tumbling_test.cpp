@@ -41,11 +41,7 @@ Sums sums(const Mesh& m, const std::vector<Vec3>& u, const std::vector<Vec3>& v,
 template <class S>
 void expect_conservation(const std::string& law, const std::string& options = "", double nu = 0.3) {
   Case c("tumbling");
-  BlockOptions o;
-  o.shape = ShapeOf<S>::shape;
-  o.n[0] = 4;
-  o.high = Vec3(1, 0.1, 0.1);
-  const Mesh m = block_mesh(o);
+  const Mesh m = block_mesh({.shape = ShapeOf<S>::shape, .n = {4, 1, 1}, .high = {1, 0.1, 0.1}});
   c.use(m);
   const Results r = c.solved("--set 'material.soft.kind=\"" + law + "\"' --set material.soft.nu=" + std::to_string(nu) + " " + options);
   const auto steps = r.steps();
@@ -81,10 +77,7 @@ TEST(TumblingBar, OfNearlyIncompressibleHexahedraKeepsMomentaAndEnergy) {
 // stability.md B2: generalized-alpha with rho = 0.9 does not survive this scene at this step; a run that cannot go on says so with exit 3.
 TEST(TumblingBar, EnergyMomentumSurvivesWhereGeneralizedAlphaDoesNot) {
   Case c("tumbling");
-  BlockOptions o;
-  o.n[0] = 4;
-  o.high = Vec3(1, 0.1, 0.1);
-  c.use(block_mesh(o));
+  c.use(block_mesh({.n = {4, 1, 1}, .high = {1, 0.1, 0.1}}));
   const std::string ga = "--quiet --set 'time.integrator=\"generalized-alpha\"' --set time.rho=0.9 --set solver.cuts=0";
   const Ran ran = c.solve(ga, "ga.h5", 3);
   EXPECT_NE(ran.err.find("stopped at t ="), std::string::npos) << ran.err;

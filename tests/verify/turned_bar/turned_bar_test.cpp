@@ -14,11 +14,7 @@ INSTANTIATE_TEST_SUITE_P(EveryShape, TurnedBar,
 TEST_P(TurnedBar, FollowsWithoutStress) {
   for (const char* law : {"stvk", "neo-hookean"}) {
     Case c("turned_bar");
-    BlockOptions o;
-    o.shape = GetParam();
-    o.n[0] = 3;
-    o.high = Vec3(1, 0.2, 0.1);
-    const Mesh m = block_mesh(o);
+    const Mesh m = block_mesh({.shape = GetParam(), .n = {3, 1, 1}, .high = {1, 0.2, 0.1}});
     c.use(m);
     const Results r = c.solved(std::string("--set 'material.steel.kind=\"") + law + "\"'");
     const auto u = r.field("displacement");

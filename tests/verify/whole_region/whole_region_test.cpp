@@ -11,13 +11,11 @@ const Vec3 size(0.3, 0.1, 0.1);
 
 /// Cells that are far smaller at x = 0, so that the mean of the nodes is far from the centre; two regions that share nodes.
 Mesh graded() {
-  BlockOptions o;
-  o.n[0] = 6, o.n[1] = o.n[2] = 2;
-  o.high = size;
-  o.regions = {"left", "right"};
-  o.region_of = [](const Vec3& x) { return x[0] < 0.2 ? 0 : 1; };
-  o.map = [](const Vec3& x) { return Vec3(x[0] * x[0] / size[0], x[1], x[2]); };
-  return block_mesh(o);
+  return block_mesh({.n = {6, 2, 2},
+                     .high = size,
+                     .map = [](const Vec3& x) { return Vec3(x[0] * x[0] / size[0], x[1], x[2]); },
+                     .regions = {"left", "right"},
+                     .region_of = [](const Vec3& x) { return x[0] < 0.2 ? 0 : 1; }});
 }
 const double border = 0.2 * 0.2 / 0.3;  // of the regions, after the map
 const Vec3 centre_left(border / 2, 0.05, 0.05);
