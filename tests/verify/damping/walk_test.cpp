@@ -7,8 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "succeeded.hpp"
-#include "verify/verify.hpp"
+#include "verify/linear_region/bars.hpp"
 
 namespace hilo::test::walk_test {
 namespace {
@@ -171,17 +170,8 @@ class ModalDamping : public testing::Test {
     if (two) {  // the same once more behind it, with nodes of its own
       BlockOptions p = o;
       p.low[0] += size[0], p.high[0] += size[0];
-      const Mesh other = block_mesh(p);
-      const auto shift = mesh.n_nodes(), cells = mesh.n_cells();
-      mesh.region_name.emplace_back("second"), mesh.region_data.emplace_back();
-      for (const Vec3& X : other.X) mesh.X.push_back(X), mesh.node_id.push_back(mesh.n_nodes() - 1);
-      for (std::int64_t e = 0; e < other.n_cells(); ++e) {
-        std::vector<std::int64_t> nodes;
-        for (const std::int64_t i : other.cell(e)) nodes.push_back(i + shift);
-        mesh.add_cell(o.shape, nodes, 1, mesh.n_cells() + 1);
-      }
-      for (const auto& [name, facets] : other.facet_sets)
-        for (auto facet : facets) facet.cell += cells, mesh.facet_sets["second-" + name].push_back(facet);
+      const Mesh one = mesh, other = block_mesh(p);
+      mesh = soft_bars::together({{&one, ""}, {&other, "second-"}});
     }
     write_mesh(work / "mesh.h5", mesh, {"test"});
     work.run("hilo-tag --quiet mesh.h5 --linear '*' -o tags.h5");

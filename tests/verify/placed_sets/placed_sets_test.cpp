@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "model/scene_sets.hpp"
-#include "succeeded.hpp"
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::placed_sets_test {
@@ -69,27 +69,33 @@ TEST(PlacedSets, ThatCannotBeAreRefusedWithTheirPlace) {
   expect("kind = \"cone\"\nat = [1, 0, 0]", "unknown kind \"cone\"");
 }
 
+/// Held at one end by a joint, pushed and pressed at others.
+std::string pushed_beam(const std::string& root, const std::string& tip, const std::string& top) {
+  return "gravity = [0, 0, -9.81]\n" + solid(1e7, 0.3, 1000) + axial("revolute", "hinge", "ground", root, {0, 0.1, 0.1}, {0, 1, 0}) +
+         spring("axial", "stay", "ground", tip, "at_a = [1, 0.1, 1]\nat_b = [1, 0.1, 0.1]\nstiffness = 500") +
+         load("pressure", "air", top, "pressure = 200") + probe("tip", tip) + in_time(0.02, 1e-3) +
+         fields("\"displacement\", \"von_mises\"");
+}
+const std::string by_place = pushed_beam("root", "tip", "top") + R"([set]
+root = {kind = "plane", at = [0, 0.1, 0.1], axis = [1, 0, 0]}
+tip = {kind = "box", low = [0.99, -1, -1], high = [1.01, 1, 1]}
+top = {kind = "plane", of = ["bl*"], at = [0.5, 0.1, 0.2], axis = [0, 0, 2]}
+)";
+
 // The same run by sets of the mesh.
 TEST(PlacedSets, GiveTheRunOfSetsOfTheMeshBitByBitAndOnRanks) {
   for (const Fidelity fidelity : {Fidelity::nonlinear, Fidelity::linear}) {
-    Case c("placed_sets");
+    SceneCase c(by_place);
     c.use(beam(), {fidelity});
     const Results placed = c.solved("", "placed.h5");
-    std::string text = text_of(c.source("scene.toml"));
-    for (const auto& [name, of_mesh] : {std::pair("root", "xmin"), {"tip", "xmax"}, {"top", "zmax"}})
-      for (const std::string key : {"b", "on"})
-        if (const auto at = text.find(key + " = \"" + name + "\""); at != std::string::npos)
-          text.replace(at, key.size() + 5 + std::string(name).size(), key + " = \"" + of_mesh + "\"");
-    for (const char* end : {"b = \"root\"", "b = \"tip\"", "on = \"tip\"", "on = \"top\""}) ASSERT_EQ(text.find(end), text.npos) << end;
-    std::ofstream(c / "mesh.toml") << text;
-    ASSERT_EQ(c.run("hilo-solve --quiet mesh.toml tags.h5 -o mesh_sets.h5").exit, 0);
-    const Results named = c.results("mesh_sets.h5");
+    c.write("mesh.toml", pushed_beam("xmin", "xmax", "zmax"));
+    const Results named = c.solved("", "mesh_sets.h5", "mesh");
     for (const std::string name : {"energy", "joint/hinge", "spring/stay"}) EXPECT_EQ(placed.history(name), named.history(name)) << name;
     EXPECT_EQ(placed.field("displacement"), named.field("displacement"));
     EXPECT_GT(placed.history("energy").col(1).maxCoeff(), 0);
     for (const int ranks : {2, 3}) {
-      ASSERT_EQ(c.run(fmt::format("hilo-part --quiet tags.h5 {} -n {} -o parts.h5", c.source("scene.toml"), ranks)).exit, 0);
-      succeeded(mpirun(ranks, "hilo-solve --quiet " + c.source("scene.toml") + " parts.h5 -o ranks.h5", c.path()));
+      ASSERT_EQ(c.run(fmt::format("hilo-part --quiet tags.h5 scene.toml -n {} -o parts.h5", ranks)).exit, 0);
+      succeeded(mpirun(ranks, "hilo-solve --quiet scene.toml parts.h5 -o ranks.h5", c.path()));
       const auto apart = (c.results("ranks.h5").history("probe/tip") - placed.history("probe/tip")).leftCols(3).cwiseAbs().maxCoeff();
       EXPECT_LT(apart, 1e-9) << ranks << " ranks";
     }
@@ -97,12 +103,10 @@ TEST(PlacedSets, GiveTheRunOfSetsOfTheMeshBitByBitAndOnRanks) {
 }
 
 TEST(PlacedSets, OfOneNodeAreRefusedOnRanks) {
-  Case c("placed_sets");
+  SceneCase c(by_place + "dot = {kind = \"ball\", at = [0, 0, 0], radius = 0.01}\n" + probe("dot"));
   c.use(beam(), {Fidelity::nonlinear});
-  std::ofstream(c / "one.toml") << text_of(c.source("scene.toml"))
-                                << "\n[set.dot]\nkind = \"ball\"\nat = [0, 0, 0]\nradius = 0.01\n[[probe]]\nname = \"dot\"\non = \"dot\"\n";
-  EXPECT_EQ(c.run("hilo-solve --quiet one.toml tags.h5 -o one.h5").exit, 0);
-  expect_end(mpirun(2, "hilo-solve --quiet one.toml tags.h5 -o two.h5", c.path()), 2, "set \"dot\": a single node");
+  EXPECT_EQ(c.run("hilo-solve --quiet scene.toml tags.h5 -o one.h5").exit, 0);
+  expect_end(mpirun(2, "hilo-solve --quiet scene.toml tags.h5 -o two.h5", c.path()), 2, "set \"dot\": a single node");
 }
 
 /// Three blocks in a row, the middle one of cells.
