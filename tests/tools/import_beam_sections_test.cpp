@@ -246,8 +246,8 @@ TEST_F(ImportBeam, AFaceOfAScriptBecomesASection) {
           "--units beside --face: the face keeps the lengths of the file (`scale` in [section.NAME])");
   refused("ring.msh --face -o r.msh", 2,
           "ring.msh: no geometry that a face can be meshed of (a .geo, .step, .brep or .iges file; a scene names a .msh file itself)");
-  place.write("lines.geo", "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Line(1) = {1, 2};\n");
-  refused("lines.geo --face -o r.msh", 2, "lines.geo: no surface to mesh (the face of a section is a plane surface in x and y)");
+  refused_deck("lines.geo", "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Line(1) = {1, 2};\n", "--face -o r.msh", 2,
+               "lines.geo: no surface to mesh (the face of a section is a plane surface in x and y)");
   place.write("two.geo",
               ring +
                   "Point(11) = {90, 0, 0}; Point(12) = {99, 0, 0}; Point(13) = {90, 9, 0};\n"

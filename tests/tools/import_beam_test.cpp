@@ -35,12 +35,10 @@ TEST_F(ImportBeam, ForcesPerLengthBendBars) {
   // one that falls evenly to nothing at the tip: w L^4/(30 E I) + w L^2/(6 k G A)
   solve(deck("PLOAD1,2,1,FY,FR,0.,.3,1.,.15\nPLOAD1,2,2,FY,LE,0.,.15,.5,0.\n"));
   EXPECT_NEAR(moved("grid_3").y() / (.3 * (1 / (30 * E * I) + 1 / (6 * k * G * A))), 1, 1e-4);
-  place.write("t.bdf", deck("PLOAD1,2,2,MZ,FR,0.,.3,1.,.3\n"));
-  imported("t.bdf", "--scene-out t.toml");
+  imported_deck("t.bdf", deck("PLOAD1,2,2,MZ,FR,0.,.3,1.,.3\n"), "--scene-out t.toml");
   expect_said("PLOAD1 of moments per length");
   const auto wrong = [&](const std::string& line, const std::string& why) {
-    place.write("w.bdf", deck(line));
-    refused("w.bdf -o b.h5 --scene-out w.toml", 2, "w.bdf:15:" + why);
+    refused_deck("w.bdf", deck(line), "-o b.h5 --scene-out w.toml", 2, "w.bdf:15:" + why);
   };
   wrong("PLOAD1,2,1,FQ,FR,0.,.3,1.,.3\n", "12: PLOAD1: no type \"FQ\" (FX, FY, FZ, FXE, FYE, FZE or moments)");
   wrong("PLOAD1,2,1,FY,FR,.5,.3,.2,.3\n", "24: PLOAD1: it ends at 0.2, before it begins at 0.5 (X2 from X1 on)");

@@ -57,8 +57,7 @@ TEST_F(ImportInpContact, GeneralContactIsOfAll) {
 
 TEST_F(ImportInpContact, LawsOfOtherProgramsAreTold) {
   const auto scene = [&](const std::string& cards) {
-    place.write("a.inp", cubes + cards + press);
-    imported("a.inp", "--scene-out s.toml");
+    imported_deck("a.inp", cubes + cards + press, "--scene-out s.toml");
     return test::text_of(place / "s.toml");
   };
   const std::string pair = "*CONTACT PAIR, INTERACTION=dry\nunder, table\n*SURFACE INTERACTION, NAME=dry\n";

@@ -10,8 +10,7 @@ namespace {
 using namespace shell_decks;
 
 TEST_F(ImportShell, ASurfaceOfGmshHasItsThickness) {
-  place.write("arch.geo", arch);
-  const Mesh m = imported("arch.geo", "--thickness 0.1");
+  const Mesh m = imported_deck("arch.geo", arch, "--thickness 0.1");
   ASSERT_EQ(m.n_cells(), 40);
   ASSERT_EQ(m.n_nodes(), 2 * 55);
   for (std::int64_t c = 0; c < m.n_cells(); ++c) EXPECT_EQ(info(m.shape[c]).name, "shell8");
@@ -69,17 +68,16 @@ TEST_F(ImportShell, GroupsOfSurfacesHaveTheirOwnThicknessBesideSolids) {
   const std::string nodes = "$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$EndNodes\n",
                     names = "$PhysicalNames\n2\n2 1 \"plate\"\n2 2 \"foot\"\n$EndPhysicalNames\n",
                     cells = "$Elements\n3\n1 3 2 1 1 1 2 5 4\n2 3 2 1 2 2 3 6 5\n3 3 2 2 1 1 2 5 4\n$EndElements\n";
-  place.write("two.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + names + nodes + cells);
-  const Mesh two = imported("two.msh", "--thickness plate=0.1");
+  const Mesh two = imported_deck("two.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + names + nodes + cells, "--thickness plate=0.1");
   EXPECT_EQ(two.n_cells(), 2);
   EXPECT_NEAR(vector_area(two, two.facet_sets.at("foot")).z(), 1, 1e-12);
   refused("two.msh -o a.h5 --thickness plate=0.1 --thickness foot=0.2", 1,
           "--thickness: surface 1 is in two groups that become shells, \"foot\" the second (name one of them: --thickness NAME=T)");
   // a mistake of a mesher: an element turned over onto its neighbour
-  place.write("over.inp",
-              "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,.4,0,0\n6,.4,1,0\n*ELEMENT, TYPE=S4, ELSET=P\n1,1,2,3,4\n"
-              "2,2,5,6,3\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,.3\n*SHELL SECTION, ELSET=P, MATERIAL=M\n.01\n");
-  imported("over.inp", "--thicken");
+  imported_deck("over.inp",
+                "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,.4,0,0\n6,.4,1,0\n*ELEMENT, TYPE=S4, ELSET=P\n1,1,2,3,4\n"
+                "2,2,5,6,3\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,.3\n*SHELL SECTION, ELSET=P, MATERIAL=M\n.01\n",
+                "--thicken");
   expect_said("warning: 1 shells lie on a neighbour, edge on edge, as those of a mesher's mistake do: the first is element 2");
 }
 
@@ -156,16 +154,14 @@ TEST_F(ImportShell, SurfacesOfAUniversalFileAreShellsAsThoseOfGmsh) {
 }
 
 TEST_F(ImportShell, ThicknessIsForSurfacesAndThickenForDecks) {
-  place.write("arch.geo", arch);
-  refused("arch.geo -o a.h5 --thicken", 1,
-          "--thicken is for shells of a deck, arch.geo is none (--thickness makes shells of its surfaces)");
-  place.write("strip.bdf", cquad4_strip("SPC1,1,123456,1,2\n"));
-  refused("strip.bdf -o a.h5 --thickness 0.3", 1,
-          "--thickness is for surfaces of a geometry, .msh, .unv, .med or Exodus file, strip.bdf is none (--thicken makes shells of a "
-          "deck, with the deck's "
-          "thickness)");
-  place.write("a.vtk", "# vtk DataFile Version 3.0\n");
-  refused("a.vtk -o a.h5 --thickness 0.3", 1, "--thickness is for surfaces of a geometry, .msh, .unv, .med or Exodus file, a.vtk is none");
+  refused_deck("arch.geo", arch, "-o a.h5 --thicken", 1,
+               "--thicken is for shells of a deck, arch.geo is none (--thickness makes shells of its surfaces)");
+  refused_deck("strip.bdf", cquad4_strip("SPC1,1,123456,1,2\n"), "-o a.h5 --thickness 0.3", 1,
+               "--thickness is for surfaces of a geometry, .msh, .unv, .med or Exodus file, strip.bdf is none (--thicken makes shells of a "
+               "deck, with the deck's "
+               "thickness)");
+  refused_deck("a.vtk", "# vtk DataFile Version 3.0\n", "-o a.h5 --thickness 0.3", 1,
+               "--thickness is for surfaces of a geometry, .msh, .unv, .med or Exodus file, a.vtk is none");
 }
 
 }  // namespace

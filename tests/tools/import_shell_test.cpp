@@ -9,30 +9,30 @@ namespace {
 using namespace shell_decks;
 
 TEST_F(ImportShell, WhatHasNoClearPairsIsRefused) {
-  place.write("arch.geo", arch);
-  refused("arch.geo -o a.h5", 2, "arch.geo: no volume to mesh (the geometry holds points, curves or surfaces only)");
+  refused_deck("arch.geo", arch, "-o a.h5", 2, "arch.geo: no volume to mesh (the geometry holds points, curves or surfaces only)");
   refused("arch.geo -o a.h5 --thickness 0", 1, "--thickness must be positive (see hilo-import --help)");
   refused("arch.geo -o a.h5 --thickness 0.1 --order 2", 1, "--thickness makes linear shells (leave --order away)");
   const std::string quads = "*ELEMENT, TYPE=S4, ELSET=P\n",
                     rest = "*MATERIAL, NAME=M\n*ELASTIC\n1e9, .3\n*SHELL SECTION, ELSET=P, MATERIAL=M\n.1\n",
                     nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,2,0,0\n4,0,1,0\n5,1,1,0\n6,2,1,0\n7,1,0,1\n8,1,1,1\n9,1,0,-1\n10,1,1,-1\n";
-  place.write("apart.inp", nodes +
-                               "11,.5,0,0\n12,.5,.5,0\n13,0,.5,0\n14,.5,0,0\n15,.5,-.5,0\n16,0,-.5,0\n17,0,-1,0\n"
-                               "*ELEMENT, TYPE=S6, ELSET=P\n1,1,2,4,11,12,13\n2,2,1,17,14,16,15\n" +
-                               rest);
-  refused("apart.inp -o a.h5 --thicken", 2,
-          "apart.inp: element 2: nodes 11 and 14 stand in the middle of one edge (--merge-nodes, where they are one)");
+  refused_deck("apart.inp",
+               nodes +
+                   "11,.5,0,0\n12,.5,.5,0\n13,0,.5,0\n14,.5,0,0\n15,.5,-.5,0\n16,0,-.5,0\n17,0,-1,0\n"
+                   "*ELEMENT, TYPE=S6, ELSET=P\n1,1,2,4,11,12,13\n2,2,1,17,14,16,15\n" +
+                   rest,
+               "-o a.h5 --thicken", 2,
+               "apart.inp: element 2: nodes 11 and 14 stand in the middle of one edge (--merge-nodes, where they are one)");
   const std::string plate =
       "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nCQUAD4,1,7,1,2,3,4\nMAT1,1,2.1+11,,.3,7850.\n";
-  place.write("membrane.bdf", plate + "PSHELL,7,1,.1\n");
-  refused("membrane.bdf -o a.h5 --thicken", 2,
-          "membrane.bdf: element 1: PSHELL with another material in bending, or none is no plate of one material (leave them as they are: "
-          "regions that are rigid)");
-  place.write("soft.bdf", plate + "PSHELL,7,1,.1,1,.5\n");
-  refused("soft.bdf -o a.h5 --thicken", 2,
-          "soft.bdf: element 1: PSHELL with 12I/T^3 other than 1, or MID4 is no plate of one material (leave them as they are: regions "
-          "that are "
-          "rigid)");
+  refused_deck(
+      "membrane.bdf", plate + "PSHELL,7,1,.1\n", "-o a.h5 --thicken", 2,
+      "membrane.bdf: element 1: PSHELL with another material in bending, or none is no plate of one material (leave them as they are: "
+      "regions that are rigid)");
+  refused_deck(
+      "soft.bdf", plate + "PSHELL,7,1,.1,1,.5\n", "-o a.h5 --thicken", 2,
+      "soft.bdf: element 1: PSHELL with 12I/T^3 other than 1, or MID4 is no plate of one material (leave them as they are: regions "
+      "that are "
+      "rigid)");
 }
 
 /// A strip 10 x 1 x 0.1 along x, clamped at x = 0, with 2 N along z at its end: tip P L^3/(3 E I), and what shear adds.
@@ -46,11 +46,11 @@ TEST_F(ImportShell, AClampedDeckOfS4BendsAsItsBeam) {
     cells += i % 2 ? fmt::format("{},{},{},{},{}\n", i + 1, a, a + 2, a + 3, a + 1)
                    : fmt::format("{},{},{},{},{}\n", i + 1, a, a + 1, a + 3, a + 2);
   }
-  place.write("strip.inp",
-              nodes + cells +
-                  "*NSET, NSET=ROOT\n1,2\n*NSET, NSET=END\n41,42\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,0.\n*DENSITY\n1000\n"
-                  "*SHELL SECTION, ELSET=STRIP, MATERIAL=M\n.1\n*BOUNDARY\nROOT,1,6\n*STEP\n*STATIC\n*CLOAD\nEND,3,1.\n*END STEP\n");
-  imported("strip.inp", "--thicken --scene-out scene.toml");
+  imported_deck("strip.inp",
+                nodes + cells +
+                    "*NSET, NSET=ROOT\n1,2\n*NSET, NSET=END\n41,42\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,0.\n*DENSITY\n1000\n"
+                    "*SHELL SECTION, ELSET=STRIP, MATERIAL=M\n.1\n*BOUNDARY\nROOT,1,6\n*STEP\n*STATIC\n*CLOAD\nEND,3,1.\n*END STEP\n",
+                "--thicken --scene-out scene.toml");
   expect_said("20 quadrangles became solid-shells, 42 nodes pairs");
   place.write("scene.toml", text_of(place / "scene.toml") + "\n[[probe]]\nname = \"END\"\non = \"END\"\n");
   succeeded(place.run("hilo-solve --quiet scene.toml -o run.h5"));
@@ -114,8 +114,7 @@ TEST_F(ImportShell, TrianglesAndMidSideNodesBendAsTheBeam) {
 }
 
 TEST_F(ImportShell, AClampedDeckOfCquad4BendsAsItsBeam) {
-  place.write("strip.bdf", cquad4_strip("SPC1,1,123456,1,2\n"));
-  const Mesh m = imported("strip.bdf", "--thicken --scene-out scene.toml");
+  const Mesh m = imported_deck("strip.bdf", cquad4_strip("SPC1,1,123456,1,2\n"), "--thicken --scene-out scene.toml");
   std::string end;
   for (const auto& [name, set] : m.facet_sets)
     if (std::abs(m.X[m.facet_nodes(set[0])[0]].x() - 10) < 1e-9 && set.size() == 1) end = name;
@@ -195,8 +194,7 @@ TEST_F(ImportShell, AQuarterOfAPlateOfCtria3HasTheSymmetryOfTheWhole) {
     for (int j = 0; j < n; ++j)
       deck += fmt::format("CTRIA3,{},7,{},{},{}\nCTRIA3,{},7,{},{},{}\n", 2 * (i * n + j) + 1, grid(i, j), grid(i + 1, j),
                           grid(i + 1, j + 1), 2 * (i * n + j) + 2, grid(i, j), grid(i + 1, j + 1), grid(i, j + 1));
-  place.write("plate.bdf", deck + "FORCE,2,1,,25.,0.,0.,1.\nENDDATA\n");
-  const Mesh m = imported("plate.bdf", "--thicken --scene-out scene.toml");
+  const Mesh m = imported_deck("plate.bdf", deck + "FORCE,2,1,,25.,0.,0.,1.\nENDDATA\n", "--thicken --scene-out scene.toml");
   EXPECT_EQ(m.n_cells(), 3 * 2 * n * n);
   std::set<std::int64_t> held;
   const std::string scene = text_of(place / "scene.toml");
@@ -249,25 +247,24 @@ TEST_F(ImportShell, ASupportStaysWithItsNode) {
   apart.replace(apart.find("CQUAD4,1,7,1,3,4,2\n"), 19, "");
   place.write("twins.bdf", apart);
   check("twins.bdf", "--merge-nodes 1e-6");
-  place.write("clamped.bdf", cquad4_strip(unused + "SPC1,1,123456,1,2\n"));
-  EXPECT_EQ(imported("clamped.bdf", "--thicken").n_cells(), 20);
+  EXPECT_EQ(imported_deck("clamped.bdf", cquad4_strip(unused + "SPC1,1,123456,1,2\n"), "--thicken").n_cells(), 20);
 }
 
 // What turns a beam that is a cell is left out by name beside --thicken too: pairs of nodes are of shells alone.
 TEST_F(ImportShell, SupportsThatHoldRigidBeamsFromTurningAreNamed) {
-  place.write("beam.bdf",
-              "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,1.+9,,0.,1000.\nPSHELL,7,1,.1,1,,1\nPBAR,8,1,.01,1.-5,1.-5\n"
-              "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,0.,0.,1.\nGRID,6,,1.,0.,1.\n"
-              "CQUAD4,1,7,1,2,3,4\nCBAR,2,8,5,6,0.,0.,1.\nSPC1,1,123456,1,4\nSPC1,1,123456,5\nFORCE,2,6,,1.,0.,0.,1.\nENDDATA\n");
-  imported("beam.bdf", "--thicken --rigid-beams --scene-out scene.toml");
+  imported_deck("beam.bdf",
+                "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,1.+9,,0.,1000.\nPSHELL,7,1,.1,1,,1\nPBAR,8,1,.01,1.-5,1.-5\n"
+                "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,0.,0.,1.\nGRID,6,,1.,0.,1.\n"
+                "CQUAD4,1,7,1,2,3,4\nCBAR,2,8,5,6,0.,0.,1.\nSPC1,1,123456,1,4\nSPC1,1,123456,5\nFORCE,2,6,,1.,0.,0.,1.\nENDDATA\n",
+                "--thicken --rigid-beams --scene-out scene.toml");
   expect_said("turns and moments of grids of shells and beams (1, beam.bdf:18)");
   EXPECT_NE(text_of(place / "scene.toml").find("card = \"turns and moments of grids of shells and beams\""), std::string::npos);
-  place.write("beam.inp",
-              "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n*ELEMENT, TYPE=S4, ELSET=P\n1,1,2,3,4\n"
-              "*ELEMENT, TYPE=B31, ELSET=R\n2,5,6\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,.3\n*DENSITY\n1000\n"
-              "*SHELL SECTION, ELSET=P, MATERIAL=M\n.1\n*BEAM SECTION, ELSET=R, MATERIAL=M, SECTION=RECT\n.1,.1\n0,0,1\n"
-              "*BOUNDARY\n1,1,6\n4,1,6\n5,1,6\n*STEP\n*STATIC\n*CLOAD\n6,5,1.\n*END STEP\n");
-  imported("beam.inp", "--thicken --rigid-beams --scene-out scene.toml");
+  imported_deck("beam.inp",
+                "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n*ELEMENT, TYPE=S4, ELSET=P\n1,1,2,3,4\n"
+                "*ELEMENT, TYPE=B31, ELSET=R\n2,5,6\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,.3\n*DENSITY\n1000\n"
+                "*SHELL SECTION, ELSET=P, MATERIAL=M\n.1\n*BEAM SECTION, ELSET=R, MATERIAL=M, SECTION=RECT\n.1,.1\n0,0,1\n"
+                "*BOUNDARY\n1,1,6\n4,1,6\n5,1,6\n*STEP\n*STATIC\n*CLOAD\n6,5,1.\n*END STEP\n",
+                "--thicken --rigid-beams --scene-out scene.toml");
   expect_said("turns and moments of nodes of shells and beams (2, beam.inp:25)");
 }
 
