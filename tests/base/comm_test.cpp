@@ -2,12 +2,8 @@
 // Ranks do not wait for ever: who works alone cannot call the others, and ranks that wait in different places end the run and say where.
 #include "base/comm.hpp"
 
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <ctime>
-#include <filesystem>
-#include <fstream>
 #include <thread>
 
 #include "base/crowd.hpp"

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the choice of an integrator says and needs.
-#include <sstream>
-
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/scenes.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Damping: what the matrix of Newton forgets costs iterations, and what the balance forgets looks like energy from nowhere.
-#include <fmt/format.h>
-
 #include "dynamics/scenes.hpp"
 #include "model/scene.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {

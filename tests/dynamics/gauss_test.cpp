@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gauss collocation (docs/gauss.md): orders against RK4 without joints or multipliers, what it keeps, its matrix of all stages against
 // differences, and what it refuses.
-#include <fmt/format.h>
-
 #include "base/registry.hpp"
 #include "base/shell_shape.hpp"
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/scenes.hpp"
 #include "linear/tangent_reader.hpp"
-#include "succeeded.hpp"
 #include "system/along.hpp"
-#include "verify/block_mesh.hpp"
 
 namespace hilo::test {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "dynamics/truth.hpp"
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The error of a fixed step where no second solution runs beside: what single steps add.  Truth: Bathe's method at a small step.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "dynamics/kept_run.hpp"
 #include "dynamics/scenes.hpp"
 #include "ranks.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {

@@ -3,7 +3,6 @@
 #include "faults.hpp"
 #include "model/store.hpp"
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 
 using namespace hilo::test;
 

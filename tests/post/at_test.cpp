@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post at: fields that the shape functions hold exactly, at points of all kinds of cells; what is refused.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
 #include <random>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs beside each other and less each other; a run between its outputs; the colours of values.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "base/error.hpp"

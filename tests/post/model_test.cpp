@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The picture of a scene before it runs.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "cli.hpp"
 #include "physics/contact/obstacle_kinds.hpp"
 #include "picture_file.hpp"
 #include "post/scene/scene_items.hpp"

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
-
 #include <sstream>
 
-#include "cli.hpp"
 #include "sample_run.hpp"
 #include "succeeded.hpp"
 

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [[quantity]]: values that closed forms know, through hilo-solve and hilo-post; and what a scene may not ask.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <map>
 #include <sstream>
 
-#include "cli.hpp"
 #include "sample_run.hpp"
 #include "scene_parts.hpp"
 #include "succeeded.hpp"

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures through the command line, with DISPLAY unset, read back pixel by pixel.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-
 #include "picture_file.hpp"
 #include "sample_run.hpp"
 #include "succeeded.hpp"

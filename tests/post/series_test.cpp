@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tables through the command line: what is written is what was stored.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 

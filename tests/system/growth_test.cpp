@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a scene of four times as many springs or regions costs to read and to build: four times as much, not sixteen.
-#include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <algorithm>
-
 #include "model/local_mesh.hpp"
-#include "succeeded.hpp"
 #include "system/system.hpp"
 #include "system/untouched.hpp"
 #include "verify/verify.hpp"

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every kind of joint, force, load and motion that a scene can name, under every integrator: the matrix of Newton is the derivative of its
 // equations.  Kinds, keys and integrators are taken from the schema, so that a new one cannot be forgotten.
-#include <gtest/gtest.h>
-
 #include <cstring>
-#include <set>
 
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/integrator_kinds.hpp"

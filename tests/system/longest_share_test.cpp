@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far a correction of Newton's may go: a cube that is pressed by twice its height is flat at half of the way, so a quarter is left to
 // go, whatever its cells; motions that leave it whole go all the way.
-#include <gtest/gtest.h>
-
 #include "model/local_mesh.hpp"
 #include "system/system.hpp"
-#include "verify/block_mesh.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {

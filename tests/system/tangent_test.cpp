@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The assembled tangent is the derivative of the assembled residual, for a scene with everything in it and both integrators' stages.
-#include <gtest/gtest.h>
-
 #include "dynamics/integrator/make.hpp"
 #include "model/local_mesh.hpp"
 #include "system/dense_kkt.hpp"

@@ -8,7 +8,6 @@
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_bdf_decks_test {
 namespace {

@@ -8,8 +8,6 @@
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_bdf_scene_test {
 namespace {

@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include "import_case.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_bdf_subcases_test {
 namespace {

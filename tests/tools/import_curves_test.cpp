@@ -4,10 +4,8 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 #include "import_case.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_curves_test {
 namespace {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shells of decks that fold, meet, change their thickness, turn at their supports or carry beams: frames of strips against beam theory.
-#include <fmt/format.h>
-
 #include "fold_frames.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_folds_test {
 namespace {

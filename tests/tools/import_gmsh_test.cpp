@@ -2,10 +2,7 @@
 // Meshes and geometries that go through gmsh, written here by gmsh itself: named groups, shapes, orders and formats survive.
 #include <fmt/format.h>
 
-#include <sstream>
-
 #include "import_case.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_gmsh_test {
 namespace {

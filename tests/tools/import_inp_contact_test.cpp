@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // *CONTACT PAIR, *SURFACE INTERACTION, *FRICTION and *CONTACT of .inp decks.  Truth: two cubes on each other, by hand.
-#include <string>
-
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_contact_test {
 namespace {

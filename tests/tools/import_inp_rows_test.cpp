@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // *EQUATION of equal displacements, *TRANSFORM, DCOUP3D, *RIGID BODY without a reference node, *PARAMETER; cells that the nodes on their
 // edges turn inside out; msh 1.  Truth: forces and extensions of a bar by hand.
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,8 +8,6 @@
 #include "import_case.hpp"
 #include "model/block.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_rows_test {
 namespace {

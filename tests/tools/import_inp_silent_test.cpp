@@ -4,8 +4,6 @@
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_silent_test {
 namespace {

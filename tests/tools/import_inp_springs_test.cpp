@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "import_case.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_springs_test {
 namespace {

@@ -7,7 +7,6 @@
 #include "import_case.hpp"
 #include "model/block.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
 
 namespace hilo::test::import_inp_test {
 namespace {

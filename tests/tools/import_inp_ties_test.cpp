@@ -7,8 +7,6 @@
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_ties_test {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Surfaces of gmsh, of geometry and of universal files that become solid-shells by --thickness.
-#include <sstream>
-
 #include "shell_case.hpp"
 
 namespace hilo::test::import_shell_surfaces_test {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shells and beams of decks: rigid regions with their mass, centre and inertia, and no word but rigid.
-
 #include "import_case.hpp"
 #include "model/thin_regions.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_thin_test {
 namespace {

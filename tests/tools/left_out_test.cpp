@@ -2,7 +2,6 @@
 // What import leaves out reaches the run: [[left_out]], warnings that --quiet keeps, refusals; and solids that nothing holds or touches.
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::left_out_test {
 namespace {

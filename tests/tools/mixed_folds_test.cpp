@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Folds at which regions of several fidelities meet, and nodes of linear regions of shells that beams, hinges, moments and joints act on:
 // beside beam theory, and beside the same scene with all of it nonlinear.
-#include <fmt/format.h>
-
 #include "fold_frames.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::mixed_folds_test {
 namespace {

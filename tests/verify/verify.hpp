@@ -6,9 +6,6 @@
 
 #include <string>
 
-#include "base/math.hpp"
-#include "cli.hpp"
-#include "model/mesh.hpp"
 #include "model/store.hpp"
 #include "succeeded.hpp"
 #include "verify/block_mesh.hpp"

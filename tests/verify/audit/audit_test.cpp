@@ -3,8 +3,6 @@
 // rank and equations vanish, and joints that opened because their rows had been dropped as redundant at the one pose where they are.
 // Truth: energy is kept, the fixed points of the joints stay together (recomputed here from the four points of each body), and what
 // contradicts itself is refused.
-
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::audit_test {

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 
 #include "physics/joint.hpp"
-#include "succeeded.hpp"
 #include "verify/beams/beam_scene.hpp"
 #include "verify/spin_up/spin_up.hpp"
 

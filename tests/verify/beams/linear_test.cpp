@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Beams of linear fidelity: against closed forms, and against the same beams with fidelity nonlinear where they move little.
 #include "ranks.hpp"
-#include "succeeded.hpp"
 #include "verify/beams/beam_scene.hpp"
 #include "verify/natural_modes/natural_modes.hpp"
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Beams at rest against closed forms and published values.
-#include <map>
-
 #include "verify/beams/beam_scene.hpp"
 #include "verify/shells/shell_scene.hpp"
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Beams whose section varies along them, against closed forms and integrals over their length.
-#include <functional>
-
 #include "verify/beams/beam_scene.hpp"
 
 namespace hilo::test::beams_taper_test {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A rubber cube pressed by a fifth of its height between plates that hold it, in four steps: what moves by a law takes the rest along, so
 // that no step begins with one layer of cells squeezed alone.  Elastic: 32 steps end where four do.
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::block_press_test {

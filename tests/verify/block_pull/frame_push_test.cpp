@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lee's frame pushed down by what moves by a law, to more than a third of its height.
-#include "succeeded.hpp"
 #include "verify/lee_frame.hpp"
 
 namespace hilo::test::frame_push_test {

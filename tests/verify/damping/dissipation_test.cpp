@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // time.dissipation of energy-momentum: a stress of second order.  What it changes falls with h^2, the energy that is left and what it
 // stores never rises, and both momenta stay, for every kind of flexible part.
-#include <fmt/format.h>
-
-#include <cmath>
-
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::dissipation_test {

@@ -4,7 +4,6 @@
 // of a run in time.
 #include <complex>
 #include <numbers>
-#include <set>
 #include <sstream>
 
 #include "verify/linear_region/bars.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Driven joints: the course is kept to round-off, the reaction is what the motion asks for, the work is accounted for.
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::drives_test {

@@ -6,14 +6,9 @@
 // load, which changes q1 by a fifth where it is small, at 0.1 s.  So the solid is held against the mode with the axial force, and the
 // slider's lag, where the coupling is small, against the published number.  data/crank/o17-beside.toml makes the published model's
 // assumption with the same solid: the axial force is carried beside it.  That is held against the published numbers.
-#include <fmt/format.h>
-
-#include <fstream>
 #include <numbers>
 
-#include "succeeded.hpp"
 #include "verify/truth.hpp"
-#include "verify/verify.hpp"
 
 namespace hilo::test::flexible_crank_test {
 namespace {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the modes of a linear region leave out, as the run tells it, against what they truly do.
-#include <fmt/format.h>
-
 #include <Eigen/QR>
-#include <fstream>
 #include <numbers>
 
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::left_out_test {

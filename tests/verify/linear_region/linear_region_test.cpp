@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Linear regions: modes about mean axes keep what rigid and nonlinear ones keep, and agree with both where they should.
-#include <fmt/format.h>
-
 #include <numbers>
 
 #include "verify/linear_region/bars.hpp"

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a linear region tells of its own strains: its share of the buckling load, strains of the second degree that its supports hold, and
 // the band of what its modes leave out; each against a closed form and against what cells of finite strain do.
-#include <fmt/format.h>
-
-#include <fstream>
 #include <numbers>
 
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::measures_test {

@@ -3,7 +3,6 @@
 #include <complex>
 #include <tuple>
 
-#include "succeeded.hpp"
 #include "verify/natural_modes/natural_modes.hpp"
 
 namespace hilo::test::response_test {

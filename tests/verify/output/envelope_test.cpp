@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // output.envelope: the largest values over all steps, whatever is put out, on any number of ranks, through a restart, and against a closed
 // form.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <fstream>
-
-#include "succeeded.hpp"
 #include "verify/everything/half_rigid.hpp"
 
 namespace hilo::test::envelope_test {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the results hold does not depend on how much of it is kept, nor on who writes it.  Truth: the run that one rank writes whole.
-#include <fmt/format.h>
-
 #include "model/block.hpp"
 #include "scene_parts.hpp"
 #include "verify/verify.hpp"

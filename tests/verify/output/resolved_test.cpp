@@ -2,7 +2,6 @@
 // What cells, modes and steps resolve: the told frequency against errors of frequencies known in closed form, and the marks on raw peaks.
 #include <numbers>
 
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::resolved_test {

@@ -3,10 +3,6 @@
 // some run.  docs/format.md is printed from the same table.
 #include "model/schema.hpp"
 
-#include <fstream>
-#include <set>
-
-#include "succeeded.hpp"
 #include "verify/contact/collision.hpp"
 #include "verify/everything/half_rigid.hpp"
 #include "verify/linear_region/bars.hpp"

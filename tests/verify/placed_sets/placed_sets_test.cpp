@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [set.NAME]: sets by place are those that the mesh would have; and what they make possible, every region at every fidelity.
-#include <fmt/format.h>
-
-#include <fstream>
-
 #include "model/scene_sets.hpp"
 #include "scene_parts.hpp"
 #include "verify/verify.hpp"

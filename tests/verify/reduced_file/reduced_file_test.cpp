@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-reduce: modes on file serve as if they were found anew, or are refused by name.
-#include <fmt/format.h>
-
 #include "verify/linear_region/bars.hpp"
 
 namespace hilo::test::reduced_file_test {

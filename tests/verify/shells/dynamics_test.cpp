@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Solid-shells in motion: natural frequencies against closed forms, what coarse steps keep, linear regions, several ranks.
 #include "base/shell_shape.hpp"
-#include "succeeded.hpp"
 #include "verify/beams/beam_scene.hpp"
 #include "verify/natural_modes/natural_modes.hpp"
 #include "verify/shells/shell_scene.hpp"

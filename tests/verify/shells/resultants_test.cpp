@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces, moments and stress of shells against equilibrium and published plates.
-#include "succeeded.hpp"
 #include "verify/shells/shell_scene.hpp"
 
 namespace hilo::test::shells_resultants_test {

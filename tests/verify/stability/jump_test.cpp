@@ -2,12 +2,7 @@
 // Load steps that jump to another branch of equilibrium are told, and those that do not are not: the truss of two bars, whose path is
 // known in closed form, alone, beside what moves farther, with histories, on ranks; an arch of solids; and softening, stiffening and stops
 // along one branch.
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::jump_test {

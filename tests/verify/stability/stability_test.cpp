@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What statics, starts from equilibrium and paths say of stability: a bar on a torsion spring under a load that buckles it, and columns.
-#include <fmt/format.h>
-
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::stability_test {

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Peaks of stress on three meshes of hex20r each, against published values, closed forms and reference.py: near from the first mesh on,
 // and nearer on each finer one.
-#include <fmt/format.h>
-
 #include <array>
-#include <map>
-#include <numbers>
 
-#include "succeeded.hpp"
 #include "verify/surface_stress/le10.hpp"
 
 namespace hilo::test::benchmarks_test {

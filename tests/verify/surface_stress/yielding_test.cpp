@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stress at nodes where it has a kink: a thick tube whose inner part yields, plane strain, no hardening.
-#include <numbers>
-
 #include "physics/stress.hpp"
 #include "verify/plasticity/hill.hpp"
 #include "verify/surface_stress/le10.hpp"

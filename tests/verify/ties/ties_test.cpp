@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Surfaces that are tied though their meshes do not match: patch tests, momenta in free flight, and closed forms.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <numbers>
 
 #include "scene_parts.hpp"
