@@ -10,7 +10,16 @@
 namespace hilo::test {
 
 constexpr double pi = std::numbers::pi;
-inline const std::string steel = "[material.m]\nE = 2e11\nnu = 0\ndensity = 8000\n[region.\"*\"]\nmaterial = \"m\"\n";
+inline const std::string steel = solid(2e11, 0, 8000);
+/// A spring of three stiffnesses at a point.
+inline std::string bushing(const std::string& name, const std::string& on, const Vec3& at, const Vec3& stiffness,
+                           const std::string& more = "") {
+  return spring("bushing", name, "ground", on, "at = " + list(at) + "\nstiffness = " + list(stiffness) + "\n" + more);
+}
+/// A revolute about y.
+inline std::string pin(const std::string& name, const std::string& a, const std::string& b, const Vec3& at) {
+  return axial("revolute", name, a, b, at, Vec3::UnitY());
+}
 
 /// A scene of the test, and what modes it has.
 class NaturalModes : public ScenePlace {
