@@ -11,9 +11,7 @@ namespace {
 class LongestShare : public testing::TestWithParam<Shape> {
  protected:
   void SetUp() override {
-    const BlockOptions o{.shape = GetParam()};
-    std::fill(o.n, o.n + 3, 2);
-    write_mesh(place / "mesh.h5", block_mesh(o), {"test"});
+    write_mesh(place / "mesh.h5", block_mesh({.shape = GetParam(), .n = {2, 2, 2}}), {"test"});
     local = read_local_mesh(place / "mesh.h5", Comm::world());
     const Scene scene = Scene::parse(R"(
 material.soft = {kind = "neo-hookean", E = 2e5, nu = 0.3, density = 1000}
