@@ -6,6 +6,7 @@
 #include "dynamics/integrator_kinds.hpp"
 #include "dynamics/scenes.hpp"
 #include "ranks.hpp"
+#include "verify/plasticity/uniaxial.hpp"
 
 namespace hilo::test {
 namespace {
@@ -140,8 +141,8 @@ TEST(KeptRun, GoesOnWithEachOfTheSerialSolvers) {
 TEST(KeptRun, GoesOnInAStaticAnalysis) {
   const Folder folder;
   write_mesh(folder / "mesh.h5", block_mesh({.n = {2, 1, 1}}), {"test"});
-  std::string scene = text_of(std::string(HILO_SOURCE) + "/tests/verify/plasticity/uniaxial.toml");
-  const RunReport report = expect_goes_on(folder.path(), scene, "mesh.h5", {1, 7, 8, 20}, {"solver.iterations=3", "solver.cuts=20"});
+  const RunReport report =
+      expect_goes_on(folder.path(), uniaxial_cycle(), "mesh.h5", {1, 7, 8, 20}, {"solver.iterations=3", "solver.cuts=20"});
   EXPECT_GT(report.cuts, 0);
   EXPECT_NE(told(folder / "later.h5").find("not checked: a static analysis"), std::string::npos) << "why its energy is not checked";
 }

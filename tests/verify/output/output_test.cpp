@@ -9,9 +9,9 @@ namespace {
 
 constexpr int nx = 12, ny = 10, nz = 10, border = 5;  // more rows than a rank writes by itself
 
-/// Two blocks of rubber on a floor, pushed at their end.
-const std::string scene = solid(1e6, 0.3, 1000, "front") + solid(1e6, 0.3, 1000, "back") + held("left") +
-                          force("push", "end", {0, 0, 2e5}) + in_time(0.02, 5e-3) + "[output]\ninterval = 0.01\n";
+const std::string scene = "title = \"Two blocks of rubber on a floor, pushed at their end\"\n" + solid(1e6, 0.3, 1000, "front") +
+                          solid(1e6, 0.3, 1000, "back") + held("left") + force("push", "end", {0, 0, 2e5}) + in_time(0.02, 5e-3) +
+                          "[output]\ninterval = 0.01\n";
 
 void use_two_blocks(Case& c) {
   Mesh mesh = block(nx, ny, nz, {"front", "back"}, [](int i) { return i < border ? 0 : 1; });

@@ -2,6 +2,7 @@
 // Metal that flows: closed forms through the whole program, the balance of energy of a bar that yields as it tumbles, published values.
 #include "verify/free_bar.hpp"
 #include "verify/plasticity/hill.hpp"
+#include "verify/plasticity/uniaxial.hpp"
 
 namespace hilo::test::plasticity_test {
 namespace {
@@ -20,13 +21,10 @@ TEST(Plasticity, BlockUnderACycleHasTheForceOfTheClosedForm) {
   for (const Shape shape : {Shape::hex8, Shape::hex20r, Shape::hex20, Shape::tet10, Shape::wedge15, Shape::wedge6, Shape::tet4}) {
     // steps that are no part of a second end where the history turns all the same
     const std::string steps = shape == Shape::hex8 ? "--set time.steps=7" : "";
-    SceneCase c(metal(E, 0.3, "yield = 400e6\nhardening = 3e9\nkinematic = 5e9") + held("xmin", "x") + held("ymin", "y") +
-                held("zmin", "z") +
-                pulled("x", "xmax", "displacement = [1, 0, 0]\nhistory = {t = [0, 1, 2, 3], value = [0, 0.3, -0.1, 0.15]}") +
-                static_to(3, 24) + fields("\"displacement\", \"plastic_strain\"", "interval = 1"));
+    SceneCase c(uniaxial_cycle());
     c.use(block_mesh({.shape = shape}));
     const Results r = c.solved(steps);
-    const auto force = r.history("motion/x"), energy = r.history("energy");
+    const auto force = r.history("motion/pull"), energy = r.history("energy");
     double p = 0, ep = 0, worst = 0;
     for (Eigen::Index k = 1; k < r.t().size(); ++k) {
       const double t = r.t()[k], u = t < 1 ? 0.3 * t : t < 2 ? 0.3 - 0.4 * (t - 1) : -0.1 + 0.25 * (t - 2), strain = std::log1p(u);
