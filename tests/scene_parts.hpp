@@ -64,6 +64,11 @@ inline std::string in_steps(int steps, const std::string& more = "", const std::
 inline std::string in_time(double end, double step, const std::string& more = "") {
   return fmt::format("[time]\nend = {}\nstep = {}\n{}\n", end, step, more);
 }
+/// Fields are quoted: "\"stress\", \"von_mises\"".
+inline std::string fields(const std::string& names, const std::string& more = "") {
+  return fmt::format("[output]\nfields = [{}]\n{}\n", names, more);
+}
+inline std::string solved_to(double tolerance) { return fmt::format("[solver]\ntolerance = {}\n", tolerance); }
 
 /// A cart of 1 kg on a rail along x, which a spring of 100 N/m holds and a force pushes.
 inline std::string pushed_cart(double F) {

@@ -79,9 +79,7 @@ struct Problem {
 };
 
 BlockOptions options(Shape shape, int nx, int ny, int nz, const Vec3& high) {
-  BlockOptions o;
-  o.shape = shape, o.high = high;
-  o.n[0] = nx, o.n[1] = ny, o.n[2] = nz;
+  const BlockOptions o{.shape = shape, .n = {nx, ny, nz}, .high = high};
   return o;
 }
 

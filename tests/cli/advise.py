@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """hilo-advise on three bars: what it chooses is within its tolerance of the run with all cells at half the step, it keeps rigid what may be
 and refuses what it cannot say.  Usage: advise.py BIN"""
-import json
 import os
 import signal
 import subprocess
@@ -10,10 +9,11 @@ import sys
 import tempfile
 import time
 
+import advised
+from advised import BIN, hinge, imported, levels, peak, told, values, write
+
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "bench"))
 from advice import Deck  # noqa: E402
-
-BIN = os.path.abspath(sys.argv[1])
 
 
 def deck(n=4):
@@ -28,39 +28,25 @@ def scene(more=""):
     """The first joint turns by 1 rad within .4 s."""
     text = "gravity = [0, 0, -9.81]\n"
     for k, (a, b) in enumerate((("ground", "a0"), ("a1", "b0"), ("b1", "c0"))):
-        text += f'[[joint]]\nkind = "revolute"\nname = "j{k}"\na = "{a}"\nb = "{b}"\nat = [{k}, 0, 0]\naxis = [0, 1, 0]\n'
+        text += hinge(f"j{k}", a, b, [k, 0, 0])
         text += 'angle = 1\nhistory = {t = [0, 0.2, 0.4], value = [0, 0.5, 1], interpolation = "smoother"}\n' if k == 0 else ""
-        text += f'[[quantity]]\nname = "R{k}"\nkind = "peak"\njoint = "j{k}"\n'
+        text += peak(f"R{k}", f"j{k}")
     return text + '[time]\nend = 0.4\nstep = 1e-3\n[region."*"]\ndamping = 1.2e-5\n' + more
 
 
-def run(*command):
-    return subprocess.run([os.path.join(BIN, command[0]), "--quiet", *command[1:]], capture_output=True, text=True, timeout=200)
-
-
-def values(tags, *more):
-    done = run("hilo-solve", "scene.toml", tags, "-o", "run.h5", *more)
-    assert done.returncode == 0, done.stderr
-    return {q["quantity"]: q["value"] for q in json.load(open("run.json"))["quantities"]}
-
-
 def tagged(*rules, mesh="mesh.h5"):
-    done = run("hilo-tag", mesh, *rules, "-o", "tags.h5")
-    assert done.returncode == 0, done.stderr
+    advised.done("hilo-tag", mesh, *rules, "-o", "tags.h5")
     return "tags.h5"
 
 
 def refused(what, *options):
-    done = run("hilo-advise", "scene.toml", "mesh.h5", *options)
-    assert done.returncode in (1, 2) and what in done.stderr, (what, done.returncode, done.stderr)
-    assert len(done.stderr.splitlines()) == 1, done.stderr
+    advised.refused((1, 2), [what], "mesh.h5", *options)
 
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    open("deck.inp", "w").write(deck())
-    assert run("hilo-import", "deck.inp", "-o", "mesh.h5").returncode == 0
-    open("scene.toml", "w").write(scene())
+    imported(deck())
+    write(scene())
 
     # modes of a folder are those found: the same values, and nothing in it is written again
     os.mkdir("modes")
@@ -71,10 +57,8 @@ with tempfile.TemporaryDirectory() as folder:
         assert values("tags.h5", "--modes", "modes") == alone
         assert all(os.stat("modes/" + f).st_mtime_ns == t for f, t in before.items())
 
-    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "--apply", "choice.toml")
-    assert done.returncode == 0, done.stderr
-    advice = json.loads(done.stdout)
-    level = {r["region"]: r["level"] for r in advice["regions"]}
+    advice = told("mesh.h5", "--tol", "2%", "--apply", "choice.toml")
+    level = levels(advice)
     assert level == {"a": "linear", "b": "rigid", "c": "rigid"}, level
     errors = {m["model"]: m["error over allowed"] for m in advice["models"]}
     assert errors["all rigid"] > 1 and errors["linear a"] < 1 and len(errors) < 8, errors
@@ -82,8 +66,7 @@ with tempfile.TemporaryDirectory() as folder:
     assert advice["checked"] and "nonlinear a; linear b, c" in " ".join(errors), errors  # it bends enough for doubt of linear strains
 
     assert "nonlinear a; linear b, c, by twice the step" in " ".join(errors), errors  # what cells change is known at half the price
-    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "--full", "--work", "full.work")
-    whole = {q["quantity"]: q for q in json.loads(done.stdout)["quantities"]}
+    whole = {q["quantity"]: q for q in told("mesh.h5", "--tol", "2%", "--full", "--work", "full.work")["quantities"]}
     for q in advice["quantities"]:
         print(f"{q['quantity']}: cells change {-q['linear strains']:.4g} at twice the step, {-whole[q['quantity']]['linear strains']:.4g} at the step")
         assert abs(q["linear strains"] - whole[q["quantity"]]["linear strains"]) < 0.02 * q["allowed"], (q, whole)
@@ -96,7 +79,7 @@ with tempfile.TemporaryDirectory() as folder:
     print(f"chosen: bar a; off by {100 * max(off.values()):.2f} %, all rigid by {100 * max(abs(rigid[q] / truth[q] - 1) for q in truth):.0f} %")
 
     before = {f: os.stat("advise.work/" + f).st_mtime_ns for f in os.listdir("advise.work")}
-    again = json.loads(run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json").stdout)
+    again = told("mesh.h5", "--tol", "2%")
     assert {**again, "spent_seconds": 0} == {**advice, "spent_seconds": 0}
     assert before == {f: os.stat("advise.work/" + f).st_mtime_ns for f in os.listdir("advise.work")}  # nothing ran again
 
@@ -106,18 +89,16 @@ with tempfile.TemporaryDirectory() as folder:
             open("advise.work/" + f, "w").write('{"complete": true, "bend": 3, "processor_seconds": "x"}')
             open("advise.work/" + f.replace(".json", ".h5"), "r+b").truncate(3000)
             break
-    again = json.loads(run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json").stdout)
-    assert {r["region"]: r["level"] for r in again["regions"]} == level and again["quantities"] == advice["quantities"], again
+    again = told("mesh.h5", "--tol", "2%")
+    assert levels(again) == level and again["quantities"] == advice["quantities"], again
     before = {f: os.stat("advise.work/" + f).st_mtime_ns for f in os.listdir("advise.work")}
 
     # the error of the mesh, by cells half as long: as four times as many say
+    a_bends = ("--keep", "a=linear", "--keep-rigid", "b", "--keep-rigid", "c")
     for n in (2, 4, 8):
-        open("deck.inp", "w").write(deck(n))
-        assert run("hilo-import", "deck.inp", "-o", f"mesh-{n}.h5").returncode == 0
-    done = run("hilo-advise", "scene.toml", "mesh-2.h5", "--tol", "2%", "--json", "--keep", "a=linear", "--keep-rigid", "b", "--keep-rigid", "c",
-               "--finer", "mesh-4.h5", "--work", "finer.work")
-    assert done.returncode == 0, done.stderr
-    got = {q["quantity"]: q for q in json.loads(done.stdout)["quantities"]}
+        imported(deck(n), f"mesh-{n}.h5")
+    advice = told("mesh-2.h5", "--tol", "2%", "--finer", "mesh-4.h5", "--work", "finer.work", *a_bends)
+    got = {q["quantity"]: q for q in advice["quantities"]}
     fine = values(tagged("--rigid", "b", "c", "--rest", "linear", mesh="mesh-8.h5"))
     for name, q in got.items():
         r = 2 ** (2 / 3)  # cells half as long along one direction of three
@@ -129,10 +110,7 @@ with tempfile.TemporaryDirectory() as folder:
     # the error of modes left out: what runs with one and with two modes differ by; at a wide tolerance the strain that they lack bounds it
     one, two = (values(tagged("--rigid", "b", "c", "--rest", "linear"), "--set", f"region.*.modes={n}") for n in (1, 2))
     for tolerance in (0.02, 0.003):
-        done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", f"{100 * tolerance:g}%", "--json", "--keep", "a=linear", "--keep-rigid", "b",
-                   "--keep-rigid", "c", "--no-full", "--set", "region.*.modes=1", "--work", "modes.work")
-        assert done.returncode == 0, done.stderr
-        advice = json.loads(done.stdout)
+        advice = told("mesh.h5", "--tol", f"{100 * tolerance:g}%", "--no-full", "--set", "region.*.modes=1", "--work", "modes.work", *a_bends)
         at_most = advice["modes_at_most_over_allowed"]
         for q in advice["quantities"]:
             wanted = one[q["quantity"]] - two[q["quantity"]]
@@ -144,15 +122,13 @@ with tempfile.TemporaryDirectory() as folder:
                 assert at_most > 0.1 and abs(q["modes"] - wanted) < 1e-4 * abs(wanted) + 1e-9 * one[q["quantity"]], (q, wanted)
 
     # a title and other quantities change no run
-    open("scene.toml", "w").write('title = "another"\n' + scene('[[quantity]]\nname = "r.m.s."\nkind = "rms"\njoint = "j0"\n'))
-    assert run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%").returncode == 0
+    write('title = "another"\n' + scene('[[quantity]]\nname = "r.m.s."\nkind = "rms"\njoint = "j0"\n'))
+    advised.done("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%")
     assert before == {f: os.stat("advise.work/" + f).st_mtime_ns for f in before}
 
     # the bar that bends too far for linear strains: all cells check it, and what is chosen serves
-    open("scene.toml", "w").write(scene('[region.b]\nmaterial = "soft"\n[material.soft]\nE = 2e9\nnu = 0.3\ndensity = 7850\n'))
-    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "-j", "2", "--apply", "choice.toml", "--csv", "models.csv")
-    assert done.returncode == 0, done.stderr
-    advice = json.loads(done.stdout)
+    write(scene('[region.b]\nmaterial = "soft"\n[material.soft]\nE = 2e9\nnu = 0.3\ndensity = 7850\n'))
+    advice = told("mesh.h5", "--tol", "2%", "-j", "2", "--apply", "choice.toml", "--csv", "models.csv")
     assert advice["checked"] and {r["region"]: r["reference"] for r in advice["regions"]}["b"] == "nonlinear", advice["regions"]
     truth = values(tagged("--rest", "nonlinear"), "--set", "time.step=5e-4")
     chosen, linear = values(tagged("choice.toml")), values(tagged("--rest", "linear"))
@@ -164,24 +140,20 @@ with tempfile.TemporaryDirectory() as folder:
     # a pull of 20 ms that the soft bar keeps from the others: with that bar rigid the first peak is far too large, and that run ends early
     pulled = scene('[region.b]\nmaterial = "soft"\n[material.soft]\nE = 2e7\nnu = 0.3\ndensity = 7850\n[[load]]\nkind = "force"\nname = "pull"\n'
                    'on = "c1"\nforce = [1e4, 0, 0]\nhistory = {t = [0, 0.01, 0.02], value = [0, 1, 0], interpolation = "smooth"}\n')
-    open("scene.toml", "w").write(pulled.replace("-9.81", "0").replace("angle = 1", "angle = 0").replace("step = 1e-3", "step = 2e-4"))
-    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "5%", "--json", "--keep", "a=nonlinear", "--keep-rigid", "c", "--no-full",
-               "--regions", "regions.csv")
-    assert done.returncode == 0, done.stderr
-    advice = json.loads(done.stdout)
+    write(pulled.replace("-9.81", "0").replace("angle = 1", "angle = 0").replace("step = 1e-3", "step = 2e-4"))
+    advice = told("mesh.h5", "--tol", "5%", "--keep", "a=nonlinear", "--keep-rigid", "c", "--no-full", "--regions", "regions.csv")
     early = [m for m in advice["models"] if "ended at" in m["model"]]
     assert len(early) == 1 and early[0]["error over allowed"] > 1.2 and early[0]["choice"] == "-", advice["models"]
-    assert next(r for r in advice["regions"] if r["region"] == "b")["level"] == "linear"
+    assert levels(advice)["b"] == "linear"
     assert open("regions.csv").read().splitlines()[1].startswith('"b",'), open("regions.csv").read()
     print(f"b rigid: {early[0]['model']}, {early[0]['error over allowed']:.3g} times what is allowed")
 
     # a joint that names a region as a whole: that one stays rigid, and it is told; regions that are not to be tried
-    open("scene.toml", "w").write(scene().replace('b = "b0"', 'b = "b"'))
-    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "--keep", "a=linear", "--keep-rigid", "c")
-    assert done.returncode == 0, done.stderr
-    told = {r["region"]: (r["level"], r["why"]) for r in json.loads(done.stdout)["regions"]}
-    assert told["a"][0] == "linear" and told["c"][0] == "rigid" and told["b"] == ("rigid", "a joint or spring names it as a whole"), told
-    open("scene.toml", "w").write(scene())
+    write(scene().replace('b = "b0"', 'b = "b"'))
+    advice = told("mesh.h5", "--tol", "2%", "--keep", "a=linear", "--keep-rigid", "c")
+    assert levels(advice) == {"a": "linear", "b": "rigid", "c": "rigid"}, advice["regions"]
+    assert {r["region"]: r["why"] for r in advice["regions"]}["b"] == "a joint or spring names it as a whole", advice["regions"]
+    write(scene())
 
     # a signal ends its solvers too
     advise = subprocess.Popen([os.path.join(BIN, "hilo-advise"), "--quiet", "scene.toml", "mesh.h5", "--set", "time.step=1e-6", "--work", "ended.work"],
@@ -196,21 +168,20 @@ with tempfile.TemporaryDirectory() as folder:
     assert solvers and not any(os.path.exists(f"/proc/{solver}") for solver in solvers), solvers
 
     refused("the step alone makes", "--tol", "0.001%")
-    open("scene.toml", "w").write(scene('[[quantity]]\nname = "s"\nkind = "peak"\nstress = "a"\n[output]\ninterval = 10\n'))
+    write(scene('[[quantity]]\nname = "s"\nkind = "peak"\nstress = "a"\n[output]\ninterval = 10\n'))
     refused("output.interval = 0.008")
-    open("scene.toml", "w").write(scene())
+    write(scene())
     refused("no region", "--keep-rigid", "d")
     refused("says twice", "--keep", "a=linear", "--keep-rigid", "a")
-    done = run("hilo-advise", "scene.toml", "mesh.h5", "--work", "scene.toml")
-    assert done.returncode == 4 and "cannot make the folder" in done.stderr, done.stderr
+    advised.refused([4], ["cannot make the folder"], "mesh.h5", "--work", "scene.toml")
     refused("no level", "--keep", "a=soft")
     refused("has no level", "--keep", "a")
     refused("contradicts", "--full", "--no-full")
     refused("no positive number", "--tol", "-1%")
     refused("has no unit", "--tol", "2")
     refused("only runs in time", "--set", 'time.analysis="static"')
-    open("scene.toml", "w").write(scene('[[quantity]]\nname = "s"\nkind = "peak"\nstress = "d"\n'))
+    write(scene('[[quantity]]\nname = "s"\nkind = "peak"\nstress = "d"\n'))
     refused('no region "d"')
-    open("scene.toml", "w").write(scene().replace('name = "R1"\nkind = "peak"\njoint = "j1"', 'name = "R1"\nkind = "peak"\njoint = "jay"'))
+    write(scene().replace('name = "R1"\nkind = "peak"\njoint = "j1"', 'name = "R1"\nkind = "peak"\njoint = "jay"'))
     refused('no joint "jay"')
 print("advise: well")

@@ -3,13 +3,11 @@
 """hilo-advise on what not every level can have: ties, contacts with a stiffness of their own, supports of some components, loads by mass,
 shells that cannot stiffen. Each scene gets an answer in which only those regions have another level that have to, or is refused with the
 solver's own words and exit.  Usage: advise_kinds.py BIN"""
-import json
 import os
-import subprocess
-import sys
 import tempfile
 
-BIN = os.path.abspath(sys.argv[1])
+import advised
+from advised import imported, peak, told, write
 
 
 class Deck:
@@ -36,37 +34,27 @@ class Deck:
         return self
 
     def write(self):
-        open("deck.inp", "w").write("*NODE\n" + "".join(f"{i + 1}, {x:.9g}, {y:.9g}, {z:.9g}\n" for i, (x, y, z) in enumerate(self.nodes)) + self.text)
-        assert run("hilo-import", "deck.inp", "-o", "mesh.h5").returncode == 0
-
-
-def run(*command):
-    return subprocess.run([os.path.join(BIN, command[0]), "--quiet", *command[1:]], capture_output=True, text=True, timeout=100)
+        imported("*NODE\n" + "".join(f"{i + 1}, {x:.9g}, {y:.9g}, {z:.9g}\n" for i, (x, y, z) in enumerate(self.nodes)) + self.text)
 
 
 def hinge(name, a, b, x):
-    return f'[[joint]]\nkind = "revolute"\nname = "{name}"\na = "{a}"\nb = "{b}"\nat = [{x}, 0.025, 0.025]\naxis = [0, 1, 0]\n'
+    return advised.hinge(name, a, b, [x, 0.025, 0.025])
 
 
 def scene(more, end=0.1, step=1e-3):
-    asked = '[[quantity]]\nname = "pin"\nkind = "peak"\njoint = "pin"\n'
-    return f'gravity = [0, 0, -9.81]\n[time]\nend = {end}\nstep = {step}\n[region."*"]\ndamping = 1e-4\n' + asked + hinge("pin", "ground", "a0", 0) + more
+    return f'gravity = [0, 0, -9.81]\n[time]\nend = {end}\nstep = {step}\n[region."*"]\ndamping = 1e-4\n' + peak("pin", "pin") + hinge("pin", "ground", "a0", 0) + more
 
 
 def advise(text, *options):
     """Levels of the base, the largest that was judged by, and what was chosen."""
-    open("scene.toml", "w").write(text)
-    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "3%", "--json", *options)
-    assert done.returncode == 0, (done.returncode, done.stderr)
-    advice = json.loads(done.stdout)
+    write(text)
+    advice = told("mesh.h5", "--tol", "3%", *options)
     return {r["region"]: (r["reference"], r["level"], r["why"]) for r in advice["regions"]}, advice
 
 
 def refused(text, code, *what):
-    open("scene.toml", "w").write(text)
-    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "3%")
-    assert done.returncode == code and all(w in done.stderr for w in what), (what, done.returncode, done.stderr)
-    assert len(done.stderr.splitlines()) == 1, done.stderr
+    write(text)
+    advised.refused([code], what, "mesh.h5", "--tol", "3%")
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -92,8 +80,8 @@ with tempfile.TemporaryDirectory() as folder:
     levels, advice = advise(scene(joints + floor, 0.04, 5e-4))
     assert levels["c"][1] != "rigid" and levels["a"][0] == "linear", levels
     assert len([m for m in advice["models"] if m["s"] is None]) <= 4, advice["models"]
-    done = run("hilo-advise", "scene.toml", "mesh.h5", "--set", "contact.stop.modulus=1e7", "--set", "contact.stop.layer=0.05", "--keep", "c=linear")
-    assert done.returncode == 1 and "leave out modulus and layer" in done.stderr, done.stderr
+    with_both = ("--set", "contact.stop.modulus=1e7", "--set", "contact.stop.layer=0.05", "--keep", "c=linear")
+    advised.refused([1], ["leave out modulus and layer"], "mesh.h5", *with_both)
 
     # what no model takes is refused as the solver refuses it
     refused(scene(joints + floor.replace("0.05", "0.05\nfriction = 1").replace('kind = "plane"', 'kind = "height-field"\nfile = "none.csv"')

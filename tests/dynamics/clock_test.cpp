@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The clock of mechanisms of one degree of freedom: where it is used, what it leaves alone, and what it does where the motion turns back.
-#include <fmt/format.h>
-
 #include "dynamics/scenes.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Damping: what the matrix of Newton forgets costs iterations, and what the balance forgets looks like energy from nowhere.
-#include <fmt/format.h>
-
 #include "dynamics/scenes.hpp"
 #include "model/scene.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -32,9 +29,7 @@ TEST(Damped, RadauGoesThroughAStiffDamperInTheStepsAskedFor) {
 
 TEST(Damped, RadauGoesThroughStiffnessProportionalDamping) {
   const Workplace w;
-  BlockOptions o;
-  o.n[0] = 4;
-  o.high = Vec3(1, 0.2, 0.2);
+  const BlockOptions o{.n = {4, 1, 1}, .high = {1, 0.2, 0.2}};
   write_mesh(w / "beam.h5", block_mesh(o), {"test"});
   w.write("scene.toml",
           "mesh = \"beam.h5\"\ngravity = [0, 0, -9.81]\n[material.soft]\nE = 1e7\nnu = 0.3\ndensity = 1000\n[region.block]\nmaterial = "
@@ -73,8 +68,7 @@ TEST(Damped, WhatADamperTakesIsInTheBalanceOfEveryMethod) {
 
 TEST(Damped, WhatAFlexibleRegionTakesIsInTheBalanceOfEveryMethod) {
   const Workplace w;
-  BlockOptions o;
-  o.high = Vec3(1, 0.2, 0.2);
+  const BlockOptions o{.high = {1, 0.2, 0.2}};
   write_mesh(w / "beam.h5", block_mesh(o), {"test"});
   w.write("scene.toml",
           "[material.soft]\nE = 1e5\nnu = 0.3\ndensity = 1000\n[region.block]\nmaterial = \"soft\"\ndamping = 4e-3\nmass_damping = 0.5\n"

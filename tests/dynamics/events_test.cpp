@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every jump and kink of every history is an instant at which steps end.  The first test walks the schema, so that a key of type history
 // that is added to it, and is not known here, fails.
-#include <gtest/gtest.h>
-
-#include <set>
 #include <sstream>
 
 #include "dynamics/step_control.hpp"

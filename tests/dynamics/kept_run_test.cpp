@@ -6,6 +6,7 @@
 #include "dynamics/integrator_kinds.hpp"
 #include "dynamics/scenes.hpp"
 #include "ranks.hpp"
+#include "verify/plasticity/uniaxial.hpp"
 
 namespace hilo::test {
 namespace {
@@ -52,11 +53,8 @@ std::string machine(bool with_motion = true) {
 
 /// A bar, partly rigid, of a material with damping, on a hinge with a body: written as mesh.h5 and tags.h5.
 std::string bar(const std::filesystem::path& folder, const std::string& law, Fidelity block = Fidelity::nonlinear) {
-  BlockOptions o;
-  o.n[0] = 6, o.n[1] = 1, o.n[2] = 1;
-  o.high = Vec3(1.2, 0.2, 0.2);
-  o.regions = {"foot", "block"};
-  o.region_of = [](const Vec3& x) { return x[0] < 0.3 ? 0 : 1; };
+  const BlockOptions o{
+      .n = {6, 1, 1}, .high = {1.2, 0.2, 0.2}, .regions = {"foot", "block"}, .region_of = [](const Vec3& x) { return x[0] < 0.3 ? 0 : 1; }};
   if (Comm::world().rank == 0) {
     Mesh mesh = block_mesh(o);
     add_node_set(mesh, "edge", [](const Vec3& x) { return x[0] > 1.19 && x[2] < 0.01; });
@@ -142,20 +140,16 @@ TEST(KeptRun, GoesOnWithEachOfTheSerialSolvers) {
 
 TEST(KeptRun, GoesOnInAStaticAnalysis) {
   const Folder folder;
-  BlockOptions o;
-  o.n[0] = 2;
-  write_mesh(folder / "mesh.h5", block_mesh(o), {"test"});
-  std::string scene = text_of(std::string(HILO_SOURCE) + "/tests/verify/plasticity/uniaxial.toml");
-  const RunReport report = expect_goes_on(folder.path(), scene, "mesh.h5", {1, 7, 8, 20}, {"solver.iterations=3", "solver.cuts=20"});
+  write_mesh(folder / "mesh.h5", block_mesh({.n = {2, 1, 1}}), {"test"});
+  const RunReport report =
+      expect_goes_on(folder.path(), uniaxial_cycle(), "mesh.h5", {1, 7, 8, 20}, {"solver.iterations=3", "solver.cuts=20"});
   EXPECT_GT(report.cuts, 0);
   EXPECT_NE(told(folder / "later.h5").find("not checked: a static analysis"), std::string::npos) << "why its energy is not checked";
 }
 
 TEST(KeptRun, GoesOnOnAPath) {
   const Folder folder;
-  BlockOptions o;
-  o.n[0] = 4, o.high = Vec3(4, 1, 1);
-  write_mesh(folder / "mesh.h5", block_mesh(o), {"test"});
+  write_mesh(folder / "mesh.h5", block_mesh({.n = {4, 1, 1}, .high = {4, 1, 1}}), {"test"});
   const std::string scene =
       "[material.m]\n" + metal + "E = 1e6\nnu = 0.3\ndensity = 1\n[region.\"*\"]\nmaterial = \"m\"\n" +
       "[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n" +

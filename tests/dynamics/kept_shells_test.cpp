@@ -8,9 +8,8 @@ namespace hilo::test {
 namespace {
 
 std::string strip(const std::filesystem::path& folder, const std::string& law) {
-  BlockOptions o;
-  o.n[0] = 6, o.n[1] = 2, o.high = Vec3(1.2, 0.4, 0.02), o.regions = {"strip"};
-  if (Comm::world().rank == 0) write_mesh((folder / "mesh.h5").string(), block_mesh(o), {"test"});
+  if (Comm::world().rank == 0)
+    write_mesh((folder / "mesh.h5").string(), block_mesh({.n = {6, 2, 1}, .high = {1.2, 0.4, 0.02}, .regions = {"strip"}}), {"test"});
   Comm::world().barrier();
   return "gravity = [0, 0, -9.81]\n[material.m]\nE = 1e8\nnu = 0.3\ndensity = 1000\n" + law +
          "[region.strip]\nmaterial = \"m\"\nshell = true\ndamping = 1e-4\n[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n"

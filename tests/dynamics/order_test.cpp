@@ -2,7 +2,6 @@
 // Orders of position, velocity, acceleration and reaction of a brick hung at its corner (stability.md, PEND3D), against RK4 on Euler's
 // equations in the test itself, which has neither joints nor multipliers.
 #include "dynamics/scenes.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Redundant rows of mechanisms too large for one dense matrix.
-#include <map>
-
 #include "dynamics/scenes.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "dynamics/truth.hpp"
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -102,11 +101,11 @@ inline OrderCase slider(const Workplace& w) {
 /// stability.md's DPSMOOTH: a rod and a soft beam of four hexahedra, from rest, loads ramped up with three continuous derivatives.
 inline OrderCase dpsmooth(const Workplace& w) {
   const Vec3 along(0.8, 0, -0.6), up(0.6, 0, 0.8);
-  BlockOptions o;
-  o.n[0] = 4;
-  o.low = Vec3(1, -0.05, -0.05), o.high = Vec3(2, 0.05, 0.05);
-  o.regions = {"beam"};
-  o.map = [&](const Vec3& x) { return Vec3(x[0] * along + x[1] * Vec3::UnitY() + x[2] * up); };
+  const BlockOptions o{.n = {4, 1, 1},
+                       .low = {1, -0.05, -0.05},
+                       .high = {2, 0.05, 0.05},
+                       .map = [&](const Vec3& x) { return Vec3(x[0] * along + x[1] * Vec3::UnitY() + x[2] * up); },
+                       .regions = {"beam"}};
   write_mesh(w / "beam.h5", block_mesh(o), {"test"});
   w.write("dpsmooth.toml",
           "mesh = \"beam.h5\"\n[material.soft]\nE = 5e6\nnu = 0.3\ndensity = 500\n[region.beam]\nmaterial = \"soft\"\n" +

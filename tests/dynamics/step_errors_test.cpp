@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The error of a fixed step where no second solution runs beside: what single steps add.  Truth: Bathe's method at a small step.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "dynamics/kept_run.hpp"
 #include "dynamics/scenes.hpp"
 #include "ranks.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
 
 /// A strip of 1 x 0.1 x 0.1 m, of n x m x m hexahedra, clamped at one end, that a force bends at the other: a period of .2 s.
 std::string strip(const std::filesystem::path& folder, int n, int m, const std::string& time) {
-  BlockOptions o;
-  o.n[0] = n, o.n[1] = o.n[2] = m;
-  o.high = Vec3(1, 0.1, 0.1);
-  if (Comm::world().rank == 0) write_mesh((folder / "mesh.h5").string(), block_mesh(o), {"test"});
+  if (Comm::world().rank == 0) write_mesh((folder / "mesh.h5").string(), block_mesh({.n = {n, m, m}, .high = {1, 0.1, 0.1}}), {"test"});
   return "[material.m]\nkind = \"stvk\"\nE = 1e8\nnu = 0.3\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n"
          "[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n"
          "[[load]]\nkind = \"force\"\nname = \"push\"\non = \"xmax\"\nforce = [0, 0, 25]\n"
@@ -94,9 +85,7 @@ TEST(StepErrors, OfALargeSceneAreTold) {
 // A bar of steel that turns, whose vibrations no step resolves: they are small, and are not added up step by step.
 TEST(StepErrors, AreNotThoseOfVibrationsThatStayAsSmallAsTheyAre) {
   const Workplace w;
-  BlockOptions o;
-  o.n[0] = 24, o.n[1] = o.n[2] = 3;
-  o.high = Vec3(1, 0.1, 0.1);
+  const BlockOptions o{.n = {24, 3, 3}, .high = {1, 0.1, 0.1}};
   write_mesh(w / "mesh.h5", block_mesh(o), {"test"});
   w.write("scene.toml",
           "[material.m]\nkind = \"stvk\"\nE = 2e11\nnu = 0.3\ndensity = 7800\n[region.block]\nmaterial = \"m\"\n"

@@ -67,8 +67,7 @@ INSTANTIATE_TEST_SUITE_P(EveryShape, RecoveryOf,
 // Truth: one strain everywhere is one stress everywhere, at corners, edges and surfaces too, and there is no error.
 TEST_P(RecoveryOf, OfAUniformStrainIsUniformAndWithoutError) {
   for (const int thick : {1, 3}) {
-    BlockOptions o;
-    o.shape = GetParam(), o.n[0] = 4, o.n[1] = 3, o.n[2] = thick, o.high = Vec3(4, 3, thick), o.map = perturbed;
+    const BlockOptions o{.shape = GetParam(), .n = {4, 3, thick}, .high = Vec3(4, 3, thick), .map = perturbed};
     Mat3 F;
     F << 1.2, 0.1, -0.05, 0.2, 0.9, 0.1, -0.1, 0.05, 1.1;
     const auto r = Model(o).recovered([&](const Vec3& X) { return Vec3(F * X); });
@@ -85,8 +84,7 @@ TEST(Recovery, OfALinearStressIsExactOnQuadraticCells) {
   for (const Shape shape : {Shape::tet10, Shape::wedge15, Shape::hex20})
     for (const auto& n : {std::array{4, 3, 3}, {4, 1, 1}, {1, 1, 1}, {3, 3, 1}, {2, 2, 2}}) {
       if (shape != Shape::tet10 && n[1] > 1) continue;  // the others hold a quadratic displacement on parallelepipeds alone
-      BlockOptions o;
-      o.shape = shape, o.high = Vec3(n[0], n[1], n[2]);
+      BlockOptions o{.shape = shape, .high = Vec3(n[0], n[1], n[2])};
       for (int i = 0; i < 3; ++i) o.n[i] = n[i];
       o.map = shape == Shape::tet10 ? perturbed : [](const Vec3& X) { return Vec3(X[0] + 0.3 * X[1], X[1] + 0.2 * X[2], X[2]); };
       Model m(o);
@@ -104,8 +102,7 @@ TEST(Recovery, OfALinearStressIsExactOnQuadraticCells) {
 // Truth: bending is there over one layer of one-point hexahedra, from their assumed strains, and over several, from their means.
 TEST(Recovery, OfBendingIsExactOnOneLayerAndOnManyOfHexahedra) {
   for (const int layers : {1, 2, 4}) {
-    BlockOptions o;
-    o.shape = Shape::hex8, o.n[0] = 6, o.n[1] = layers, o.n[2] = 2, o.low = Vec3(0, -0.5, 0), o.high = Vec3(6, 0.5, 2);
+    const BlockOptions o{.shape = Shape::hex8, .n = {6, layers, 2}, .low = {0, -0.5, 0}, .high = {6, 0.5, 2}};
     Model m(o);
     const auto r = m.recovered(bent);
     for (size_t a = 0; a < r.stress.size(); ++a) EXPECT_NEAR(r.stress[a][0], bending(m.X[a])[0], 2e-4 * E * k) << layers << " layers";
@@ -114,8 +111,7 @@ TEST(Recovery, OfBendingIsExactOnOneLayerAndOnManyOfHexahedra) {
 
 // Truth: turning a deformed body turns its stress and changes neither its von Mises stress nor the error.
 TEST_P(RecoveryOf, TurnsWithTheBody) {
-  BlockOptions o;
-  o.shape = GetParam(), o.n[0] = 3, o.n[1] = 2, o.n[2] = 2, o.high = Vec3(3, 2, 2), o.map = perturbed;
+  const BlockOptions o{.shape = GetParam(), .n = {3, 2, 2}, .high = {3, 2, 2}, .map = perturbed};
   Model m(o);
   const Mat3 R = Eigen::AngleAxisd(2.5, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
   const auto deformed = [](const Vec3& X) { return Vec3(X + 0.05 * Vec3(X[0] * X[1], std::sin(X[2] + X[0]), X[1] * X[1] * X[2])); };
@@ -134,8 +130,7 @@ TEST_P(RecoveryOf, TurnsWithTheBody) {
 // it.
 TEST(Recovery, OfABeamBentIntoHalfACircleIsTheSameAllAlong) {
   const double radius = 10 / 3.14159265358979, half = 0.1;
-  BlockOptions o;
-  o.shape = Shape::hex20, o.n[0] = 20, o.n[1] = 2, o.n[2] = 1, o.low = Vec3(0, -half, -half), o.high = Vec3(10, half, half);
+  const BlockOptions o{.shape = Shape::hex20, .n = {20, 2, 1}, .low = Vec3(0, -half, -half), .high = Vec3(10, half, half)};
   Model m(o);
   const auto r = m.recovered([&](const Vec3& X) {
     return Vec3((radius - X[1]) * std::sin(X[0] / radius), radius - (radius - X[1]) * std::cos(X[0] / radius), X[2]);
@@ -154,9 +149,9 @@ TEST(Recovery, OfABeamBentIntoHalfACircleIsTheSameAllAlong) {
 // Truth: two materials stretched side by side carry stresses in the ratio of their moduli; neither sees the other's.
 TEST(Recovery, NeverLooksAcrossARegion) {
   for (const Shape shape : {Shape::hex8, Shape::hex20, Shape::tet10}) {
-    BlockOptions o;
-    o.shape = shape, o.n[0] = 3, o.n[1] = 4, o.n[2] = 2, o.high = Vec3(3, 4, 2), o.regions = {"hard", "soft"};
-    o.region_of = [](const Vec3& X) { return X[1] > 2 ? 1 : 0; };
+    const BlockOptions o{.shape = shape, .n = {3, 4, 2}, .high = {3, 4, 2}, .regions = {"hard", "soft"}, .region_of = [](const Vec3& X) {
+                           return X[1] > 2 ? 1 : 0;
+                         }};
     Model m(o, "[material.soft]\nE = 2e9\nnu = 0.3\ndensity = 1000\n");
     const auto r = m.recovered([](const Vec3& X) { return Vec3(X[0] * (1 + 1e-6), X[1] * (1 - 0.3e-6), X[2] * (1 - 0.3e-6)); });
     for (size_t a = 0; a < r.stress.size(); ++a) {

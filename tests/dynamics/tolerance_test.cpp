@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // time.tolerance is the error of positions at the end, as a fraction of the scene's length, also where the motion multiplies early ones;
 // variable steps keep the order; a fixed step tells its own error.
-#include <fstream>
 #include <numbers>
 
 #include "dynamics/scenes.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {

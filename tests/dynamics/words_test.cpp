@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the scene's schema takes for a word is what makes something of it, and the other way round: no word is the last branch of an if.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "dynamics/choose_solver.hpp"
 #include "dynamics/record/fields.hpp"
 #include "model/local_mesh.hpp"

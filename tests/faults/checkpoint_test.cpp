@@ -3,7 +3,6 @@
 #include "faults.hpp"
 #include "model/store.hpp"
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 
 using namespace hilo::test;
 
@@ -180,8 +179,7 @@ TEST_F(Stopped, ADamagedCheckpointIsPassedOverForTheOneBefore) {
   for (const size_t cut : {whole.size() / 2, whole.size() - 1000}) {
     work.write("run.checkpoint.h5", whole.substr(0, cut));
     const auto o = work.run("hilo-solve --restart run.h5 --checkpoint 100steps");
-    EXPECT_EQ(o.exit, 0) << o.err;
-    EXPECT_NE(o.err.find("the one before it is taken"), o.err.npos) << o.err;
+    expect_end(o, 0, "the one before it is taken");
     EXPECT_NE(o.err.find("goes on from t = 0.4 s"), o.err.npos) << o.err;
   }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Too little memory ends in exit 4 within seconds and says so; what --dry-run tells is what a run takes.
 #include <cmath>
-#include <cstdio>
 
 #include "faults.hpp"
 

@@ -8,7 +8,6 @@
 #include "import/gmsh/cad.hpp"
 #include "import/imported.hpp"
 #include "model/scaled_jacobian.hpp"
-#include "succeeded.hpp"
 #include "tools/import_case.hpp"
 
 namespace hilo::test::import_cad_test {

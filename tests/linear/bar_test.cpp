@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The solvers on an elastic bar between two bodies, one of them held by a joint, and with a tied node.
-#include <gtest/gtest.h>
-
 #include "../ranks.hpp"
 #include "problem.hpp"
 

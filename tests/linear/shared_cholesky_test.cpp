@@ -3,11 +3,7 @@
 #include "linear/shared_cholesky.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 
 #include "../ranks.hpp"
 #include "problem.hpp"

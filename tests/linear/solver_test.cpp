@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What every solver promises, on random saddle points against Eigen's dense LU.
-#include <gtest/gtest.h>
-
 #include <Eigen/LU>
 
 #include "../ranks.hpp"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // BDDC and FETI-DP on an elastic bar between two bodies, in slabs and in irregular parts, against the direct solver.
-#include <gtest/gtest.h>
-
 #include "../ranks.hpp"
 #include "problem.hpp"
 

@@ -85,8 +85,7 @@ std::string scene_text(const Machine& m, const TimeAxis& time) {
 }
 
 Mesh block_of(const MachineBlock& b) {
-  BlockOptions o;
-  o.shape = b.shape;
+  BlockOptions o{.shape = b.shape};
   std::copy(b.n, b.n + 3, o.n);
   o.low = b.low, o.high = b.high;
   o.regions = {"block"};

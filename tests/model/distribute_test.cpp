@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The mesh spread over ranks is the mesh of the file.  The suite DISABLED_Spread runs on 1 to 4 ranks, in a folder with the files.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <numeric>
 
 #include "../ranks.hpp"
 #include "base/error.hpp"
 #include "block.hpp"
-#include "folder.hpp"
 #include "model/local_mesh.hpp"
 #include "model/partition.hpp"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/mesh.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "base/math.hpp"
 #include "verify/block_mesh.hpp"
 
 namespace hilo::test {

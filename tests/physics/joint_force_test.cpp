@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stops, motors and friction as laws of one coordinate.
-#include <cmath>
-
 #include "physics/connectors.hpp"
 #include "physics/coordinates.hpp"
 #include "physics/spring.hpp"

@@ -2,7 +2,6 @@
 // Rows that are functions of measures: exact geometry over many turns, exact discrete gradients, exact derivatives.
 #include "physics/joint_rows.hpp"
 
-#include <functional>
 #include <numbers>
 
 #include "physics/connectors.hpp"

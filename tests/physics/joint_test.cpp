@@ -2,7 +2,6 @@
 // Joints: every measure is of degree two, so its mid-point gradient is an exact discrete gradient, and every kind has its own number of
 // rows.
 #include <Eigen/QR>
-#include <algorithm>
 
 #include "physics/connectors.hpp"
 

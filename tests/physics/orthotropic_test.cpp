@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Orthotropic elasticity: moduli in any direction, and one that is isotropic after all.
-#include <cmath>
-
 #include "physics/cells.hpp"
 
 namespace hilo::test {

@@ -4,10 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
-#include <vector>
-
 #include "verify/block_mesh.hpp"
 
 namespace hilo::test {

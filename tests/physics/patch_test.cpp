@@ -10,18 +10,14 @@ class Patch : public testing::TestWithParam<std::tuple<Shape, int, double>> {}; 
 
 /// 3 x 3 x 3 bricks of that shape, every corner inside the block moved, so that no cell is a parallelepiped and no inner facet is plane.
 Mesh bent_patch(Shape shape) {
-  BlockOptions o;
-  o.shape = shape;
-  for (int& n : o.n) n = 3;
-  o.map = [](const Vec3& x) {
-    Vec3 y = x;
-    const bool inside = (x.array() > 1e-9).all() && (x.array() < 1 - 1e-9).all();
-    const int seed = static_cast<int>(std::lround(3 * x[0]) + 10 * std::lround(3 * x[1]) + 100 * std::lround(3 * x[2]));
-    if (inside)
-      for (int i = 0; i < 3; ++i) y[i] += 0.06 * scatter(seed + 1000 * i);
-    return y;
-  };
-  return block_mesh(o);
+  return block_mesh({.shape = shape, .n = {3, 3, 3}, .map = [](const Vec3& x) {
+                       Vec3 y = x;
+                       const bool inside = (x.array() > 1e-9).all() && (x.array() < 1 - 1e-9).all();
+                       const int seed = static_cast<int>(std::lround(3 * x[0]) + 10 * std::lround(3 * x[1]) + 100 * std::lround(3 * x[2]));
+                       if (inside)
+                         for (int i = 0; i < 3; ++i) y[i] += 0.06 * scatter(seed + 1000 * i);
+                       return y;
+                     }});
 }
 
 // Truth: int grad N_a dV over the cells around an inner node is the surface integral of N_a n, which is zero; so a constant first

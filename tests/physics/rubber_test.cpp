@@ -2,10 +2,8 @@
 // Mooney-Rivlin and Ogden at a point: closed forms, derivatives, work of a step.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <variant>
 
-#include "base/math.hpp"
 #include "physics/material/mooney_rivlin.hpp"
 #include "physics/material/neo_hookean.hpp"
 #include "physics/material/ogden.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Beams as pictures draw them: swept sections with the stress of their points.
-#include <gtest/gtest.h>
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
 #include <vtkUnstructuredGrid.h>
@@ -9,7 +8,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "cli.hpp"
 #include "post/run/playback.hpp"
 #include "succeeded.hpp"
 

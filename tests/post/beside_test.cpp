@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs beside each other and less each other; a run between its outputs; the colours of values.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "base/error.hpp"
-#include "cli.hpp"
 #include "model/store.hpp"
 #include "picture_file.hpp"
 #include "post/picture/colour.hpp"
 #include "post/run/playback.hpp"
 #include "post/scene/frames.hpp"
 #include "sample_run.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -77,9 +75,7 @@ TEST(Minus, another_mesh_is_refused) {
   sample::write_run(place.path(), sample::cube(2), 1);
   ASSERT_EQ(place.run("mkdir other && mv run.h5 mesh.h5 other/").exit, 0);
   sample::write_run(place.path(), sample::cube(3), 1);
-  const Ran ran = post(place, "render run.h5 --minus other/run.h5 -o x.png");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("other/run.h5: 27 nodes and 8 cells, but run.h5 has 64 and 27"), std::string::npos) << ran.err;
+  expect_end(post(place, "render run.h5 --minus other/run.h5 -o x.png"), 2, "other/run.h5: 27 nodes and 8 cells, but run.h5 has 64 and 27");
   EXPECT_EQ(post(place, "render run.h5 --minus other/run.h5 --field region -o x.png").exit, 1);
   EXPECT_EQ(post(place, "render run.h5 --minus run.h5 -o zero.png").exit, 0);
 }
@@ -126,9 +122,8 @@ TEST(Beside, a_run_that_does_not_reach_the_instant_is_named) {
   sample::write_run(place.path(), sample::cube(2), 2, true, {21, 5e-4});  // to 0.01 s
   ASSERT_EQ(place.run("mkdir short && mv run.h5 mesh.h5 short/").exit, 0);
   sample::write_run(place.path(), sample::cube(2), 2);
-  const Ran ran = post(place, "render run.h5 --beside short/run.h5 -o x.png");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("short/run.h5: no output around t = 0.1 s (there are 0 to 0.01 s)"), std::string::npos) << ran.err;
+  expect_end(post(place, "render run.h5 --beside short/run.h5 -o x.png"), 2,
+             "short/run.h5: no output around t = 0.1 s (there are 0 to 0.01 s)");
   EXPECT_EQ(post(place, "render run.h5 --beside short/run.h5 --label a --label b --label c -o x.png").exit, 1);
 }
 

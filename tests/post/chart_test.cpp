@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "base/error.hpp"
-#include "cli.hpp"
 #include "picture_file.hpp"
 #include "post/charts/ticks.hpp"
 #include "post/files/csv.hpp"

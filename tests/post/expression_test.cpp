@@ -2,14 +2,11 @@
 // Formulas over histories, and tables set beside each other, through the command line and by themselves.
 #include "post/run/expression.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
 
 #include "base/error.hpp"
-#include "cli.hpp"
 #include "model/store.hpp"
 #include "post/files/csv.hpp"
 #include "sample_run.hpp"

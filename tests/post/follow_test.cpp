@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cameras that follow, deformations, ways of points, arrows of forces.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "moving_run.hpp"

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The picture of a scene before it runs.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "cli.hpp"
 #include "physics/contact/obstacle_kinds.hpp"
 #include "picture_file.hpp"
 #include "post/scene/scene_items.hpp"
@@ -94,9 +91,8 @@ radius = 0.05
     EXPECT_EQ(item(name).at, Vec3(0.6, 0, 0.55));
     EXPECT_EQ(item(name).along, Vec3(0, 1, 0));
   }
-  const Ran ran = place.run("hilo-post model scene.toml --set motor.drive.joint=truniom -o model.png");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("no joint \"truniom\" (did you mean \"trunnion\"?)"), std::string::npos) << ran.err;
+  expect_end(place.run("hilo-post model scene.toml --set motor.drive.joint=truniom -o model.png"), 2,
+             "no joint \"truniom\" (did you mean \"trunnion\"?)");
 }
 
 // Truth: an outline lies on the surface of its obstacle.
@@ -161,8 +157,7 @@ TEST(Model, a_joint_to_a_set_that_is_not_there_is_an_error) {
   write_mesh(place / "mesh.h5", sample::machine(), {"sample"});
   place.write("scene.toml", scene_text);
   const Ran ran = place.run("hilo-post model scene.toml --set joint.trunnion.b=breach -o model.png");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("no region or set \"breach\""), std::string::npos) << ran.err;
+  expect_end(ran, 2, "no region or set \"breach\"");
   EXPECT_NE(ran.err.find("did you mean \"breech\"?"), std::string::npos) << ran.err;
   EXPECT_EQ(place.files(), (std::set<std::string>{"mesh.h5", "scene.toml"}));
 }

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [[quantity]]: values that closed forms know, through hilo-solve and hilo-post; and what a scene may not ask.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <map>
 #include <sstream>
 
-#include "cli.hpp"
 #include "sample_run.hpp"
 #include "scene_parts.hpp"
 #include "succeeded.hpp"
@@ -66,8 +63,7 @@ TEST(Quantity, meets_closed_forms_and_run_json_has_it) {
   const auto in_json = values(text_of(place / "run.json"));
   ASSERT_EQ(in_json.size(), v.size());
   for (const char* name : {"peak", "up", "then", "mean", "apart", "half"}) EXPECT_EQ(in_json.at(name), v[name]) << name;
-  EXPECT_EQ(place.run("hilo-post quantity run.h5 paek").exit, 2);
-  EXPECT_NE(place.run("hilo-post quantity run.h5 paek").err.find("did you mean \"peak\""), std::string::npos);
+  expect_end(place.run("hilo-post quantity run.h5 paek"), 2, "did you mean \"peak\"");
 }
 
 TEST(Quantity, frequency_is_that_of_a_mass_on_a_spring) {

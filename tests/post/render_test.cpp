@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures through the command line, with DISPLAY unset, read back pixel by pixel.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-
-#include "cli.hpp"
 #include "picture_file.hpp"
 #include "sample_run.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -148,9 +144,7 @@ TEST(Render, wrong_input_is_named_in_one_line_and_leaves_nothing) {
 
 TEST(Render, without_EGL_says_what_to_install_and_exits_with_4) {
   const auto& place = sample_place();
-  const Ran ran = place.run("__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere hilo-post render run.h5 -o none.png");
-  EXPECT_EQ(ran.exit, 4);
-  EXPECT_NE(ran.err.find("cannot draw without a display"), std::string::npos) << ran.err;
+  expect_end(place.run("__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere hilo-post render run.h5 -o none.png"), 4, "cannot draw without a display");
   EXPECT_EQ(place.files().count("none.png"), 0u);
 }
 
@@ -158,9 +152,7 @@ TEST(Render, a_mesh_that_has_gone_is_named) {
   const Workplace place;
   sample::write_run(place.path(), sample::cube(2), 1);
   std::filesystem::remove(place / "mesh.h5");
-  const Ran ran = post(place, "render run.h5 -o x.png");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("mesh.h5, is missing"), std::string::npos) << ran.err;
+  expect_end(post(place, "render run.h5 -o x.png"), 2, "mesh.h5, is missing");
 }
 
 }  // namespace

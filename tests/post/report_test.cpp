@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post injury as a user runs it: one truth in text, CSV and JSON, and pages that nothing runs out of.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
-#include "cli.hpp"
 #include "picture_file.hpp"
 #include "post/files/csv.hpp"
 #include "sample_run.hpp"

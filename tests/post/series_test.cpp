@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tables through the command line: what is written is what was stored.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "cli.hpp"
 #include "model/store.hpp"
 #include "picture_file.hpp"
 #include "post/files/csv.hpp"
 #include "sample_run.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -115,15 +113,12 @@ TEST(Gload, table_has_the_peaks_and_the_clip_of_the_stored_pulse) {
 
 TEST(Gload, refuses_a_class_the_record_cannot_hold) {
   const Ran ran = post(sample_place(), "gload run.h5 --cfc 600");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("sensor \"seat\": sampled every 0.0005 s, too seldom for CFC 600"), std::string::npos) << ran.err;
+  expect_end(ran, 2, "sensor \"seat\": sampled every 0.0005 s, too seldom for CFC 600");
   EXPECT_EQ(ran.out, "");
 }
 
 TEST(Gload, an_unknown_sensor_is_an_error_with_the_nearest_one) {
-  const Ran ran = post(sample_place(), "gload run.h5 --sensor sest");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("no sensor \"sest\" (did you mean \"seat\"?)"), std::string::npos) << ran.err;
+  expect_end(post(sample_place(), "gload run.h5 --sensor sest"), 2, "no sensor \"sest\" (did you mean \"seat\"?)");
 }
 
 }  // namespace

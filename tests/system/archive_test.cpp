@@ -2,8 +2,6 @@
 // What springs and joints remember can be kept and restored: a run that goes on from restored values goes on bit by bit.
 #include "base/archive.hpp"
 
-#include <gtest/gtest.h>
-
 #include "dynamics/integrator/make.hpp"
 #include "scene_parts.hpp"
 #include "verify/verify.hpp"

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a scene of four times as many springs or regions costs to read and to build: four times as much, not sixteen.
-#include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <algorithm>
-
 #include "model/local_mesh.hpp"
-#include "succeeded.hpp"
 #include "system/system.hpp"
 #include "system/untouched.hpp"
 #include "verify/verify.hpp"
@@ -38,9 +34,7 @@ double growth(int who, Small small, Large large) {
 /// n springs to the ground at as many nodes of a block of 8000 hexahedra, each node a set.
 struct Springs {
   explicit Springs(int n) {
-    BlockOptions o;
-    o.n[0] = o.n[1] = o.n[2] = 20;
-    Mesh mesh = block_mesh(o);
+    Mesh mesh = block_mesh({.n = {20, 20, 20}});
     text = "[material.m]\nE = 1e9\nnu = 0.3\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n[time]\nanalysis = \"static\"\n";
     for (int i = 0; i < n; ++i) {
       const std::string name = "n" + std::to_string(i);

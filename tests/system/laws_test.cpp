@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every kind of joint, force, load and motion that a scene can name, under every integrator: the matrix of Newton is the derivative of its
 // equations.  Kinds, keys and integrators are taken from the schema, so that a new one cannot be forgotten.
-#include <gtest/gtest.h>
-
 #include <cstring>
-#include <set>
 
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/integrator_kinds.hpp"
@@ -259,11 +256,8 @@ class Laws : public testing::TestWithParam<std::string> {
   static const LocalMesh& mesh() {
     static const Workplace place;
     static LocalMesh local = [] {
-      BlockOptions o;
-      o.n[2] = 2;
-      o.high = Vec3(0.4, 0.3, 0.8);
-      o.map = [](const Vec3& x) { return Vec3(x + 0.02 * Vec3(std::sin(7 * x[2]), 0, 0)); };
-      Mesh m = block_mesh(o);
+      Mesh m = block_mesh(
+          {.n = {1, 1, 2}, .high = {0.4, 0.3, 0.8}, .map = [](const Vec3& x) { return Vec3(x + 0.02 * Vec3(std::sin(7 * x[2]), 0, 0)); }});
       add_node_set(m, "line", [](const Vec3& x) { return std::abs(x[2] - 0.8) < 1e-9 && x[0] > 0.2; });
       write_mesh(place / "mesh.h5", m, {"test"});
       return read_local_mesh(place / "mesh.h5", Comm::world());

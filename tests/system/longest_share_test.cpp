@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far a correction of Newton's may go: a cube that is pressed by twice its height is flat at half of the way, so a quarter is left to
 // go, whatever its cells; motions that leave it whole go all the way.
-#include <gtest/gtest.h>
-
 #include "model/local_mesh.hpp"
 #include "system/system.hpp"
-#include "verify/block_mesh.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -14,10 +11,7 @@ namespace {
 class LongestShare : public testing::TestWithParam<Shape> {
  protected:
   void SetUp() override {
-    BlockOptions o;
-    o.shape = GetParam();
-    std::fill(o.n, o.n + 3, 2);
-    write_mesh(place / "mesh.h5", block_mesh(o), {"test"});
+    write_mesh(place / "mesh.h5", block_mesh({.shape = GetParam(), .n = {2, 2, 2}}), {"test"});
     local = read_local_mesh(place / "mesh.h5", Comm::world());
     const Scene scene = Scene::parse(R"(
 material.soft = {kind = "neo-hookean", E = 2e5, nu = 0.3, density = 1000}

@@ -18,12 +18,9 @@ using Matrix = Eigen::MatrixXd;
 class StiffeningBar : public testing::TestWithParam<Shape> {
  protected:
   StiffeningBar() {
-    BlockOptions o;
-    o.shape = GetParam();
-    o.n[0] = 3;
-    o.high = Vec3(1, 0.2, 0.3);
-    o.map = [](const Vec3& x) { return Vec3(x + 0.02 * Vec3(0, std::sin(3 * x[0]), 0)); };
-    const Mesh mesh = block_mesh(o);
+    const Mesh mesh = block_mesh({.shape = GetParam(), .n = {3, 1, 1}, .high = {1, 0.2, 0.3}, .map = [](const Vec3& x) {
+                                    return Vec3(x + 0.02 * Vec3(0, std::sin(3 * x[0]), 0));
+                                  }});
     in.X = mesh.X;
     SolidBatch b;
     b.shape = GetParam(), b.material = StVenantKirchhoff{{1.2e7, 0.7e7}}, b.density = 1000, b.region = 0;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The assembled tangent is the derivative of the assembled residual, for a scene with everything in it and both integrators' stages.
-#include <gtest/gtest.h>
-
 #include "dynamics/integrator/make.hpp"
 #include "model/local_mesh.hpp"
 #include "system/dense_kkt.hpp"
@@ -71,13 +69,13 @@ std::unique_ptr<StageIntegrator> made(const std::string& name) {
 class Tangent : public testing::TestWithParam<std::tuple<const char*, const char*>> {
  protected:
   Tangent() {
-    BlockOptions o;
-    o.n[0] = 1, o.n[1] = 1, o.n[2] = 4;
-    o.high = Vec3(0.4, 0.3, 1.6);
-    o.regions = {"heavy", "soft", "upper"};
-    o.region_of = [](const Vec3& x) { return x[2] < 0.4 ? 0 : x[2] < 1.2 ? 1 : 2; };
-    o.map = [](const Vec3& x) { return Vec3(x + 0.02 * Vec3(std::sin(7 * x[2]), 0, 0)); };
-    Mesh m = block_mesh(o);
+    Mesh m = block_mesh({.n = {1, 1, 4},
+                         .high = {0.4, 0.3, 1.6},
+                         .map = [](const Vec3& x) { return Vec3(x + 0.02 * Vec3(std::sin(7 * x[2]), 0, 0)); },
+                         .regions = {"heavy", "soft", "upper"},
+                         .region_of = [](const Vec3& x) { return x[2] < 0.4   ? 0
+                                                                 : x[2] < 1.2 ? 1
+                                                                              : 2; }});
     for (auto& [name, list] : m.facet_sets)
       if (name == "zmax") m.node_sets["unused"] = {};
     m.node_sets.erase("unused");

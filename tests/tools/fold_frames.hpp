@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "import_case.hpp"
-#include "model/store.hpp"
 
 namespace hilo::test::fold_frames {
 

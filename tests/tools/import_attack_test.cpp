@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Damaged decks: whatever a line says, it is read or refused by place, and the scene lines that come of it are a scene.
-#include <fmt/format.h>
-
 #include <random>
 
 #include "base/error.hpp"

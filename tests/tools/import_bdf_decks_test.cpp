@@ -8,7 +8,6 @@
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_bdf_decks_test {
 namespace {
@@ -39,8 +38,7 @@ class ImportBdfDecks : public test::ImportAndRun {
     return sum / n;
   }
   Scene scene(const std::string& text, const std::string& options = "") {
-    place.write("a.bdf", text);
-    imported("a.bdf", "--scene-out s.toml " + options);
+    imported_deck("a.bdf", text, "--scene-out s.toml " + options);
     return Scene::load(place / "s.toml");
   }
 };
@@ -62,8 +60,7 @@ TEST_F(ImportBdfDecks, ABeamThatLeavesItBlankHasTheDefaultsOfBaror) {
   }
   solve(stat + two + "PBEAM,5,1,1.-3,4.-7,1.-7,,2.-7\n" + steel + "CBEAM,1,,1,2\nBEAMOR,,5,,,0.,1.,0.\nFORCE,2,2,,1.,0.,1.,0.\n");
   EXPECT_NEAR(moved(2).y(), bend / 4e-7 + 1 / (G * 1e-3), 1e-4 * bend / 4e-7);
-  place.write("a.bdf", "BAROR,,5\nBAROR,,6\n");
-  refused("a.bdf -o b.h5", 2, "a.bdf:2: BAROR is given twice (give it once)");
+  refused_deck("a.bdf", "BAROR,,5\nBAROR,,6\n", "-o b.h5", 2, "a.bdf:2: BAROR is given twice (give it once)");
 }
 
 // The grids are in the shear centre, the line of stretch is n away along y: a pull there bends, a push across does not twist.
@@ -142,8 +139,7 @@ TEST_F(ImportBdfDecks, MassesAlongComponentsAreAMassWhereTheyAreEqual) {
   EXPECT_NEAR(frequency(1), f, 1e-4 * f);
   scene(bar + "CMASS2,12,5.,2,2\nCMASS2,13,4.,2,3\n");
   expect_said("not read: CMASS2: a mass that differs by direction (1, a.bdf:");
-  place.write("a.bdf", bar + "CMASS1,12,9,2,2\n");
-  refused("a.bdf -o b.h5", 2, "a.bdf:13: CMASS1 12: no PMASS 9");
+  refused_deck("a.bdf", bar + "CMASS1,12,9,2,2\n", "-o b.h5", 2, "a.bdf:13: CMASS1 12: no PMASS 9");
 }
 
 TEST_F(ImportBdfDecks, APipeStretchesByTheAreaOfItsWall) {
@@ -154,16 +150,15 @@ TEST_F(ImportBdfDecks, APipeStretchesByTheAreaOfItsWall) {
   };
   EXPECT_NEAR(tip("PTUBE,5,1,.1,.01\n"), 1000 / (E * pi * .01 * .09), 1e-5 * 1000 / (E * pi * .01 * .09));
   EXPECT_NEAR(tip("PTUBE,5,1,.1\n"), 1000 / (E * pi * .0025), 1e-5 * 1000 / (E * pi * .0025));
-  place.write("a.bdf", two + "CTUBE,1,5,1,2\nPTUBE,5,1,.1,.06\n");
-  refused("a.bdf -o b.h5", 2, "a.bdf:5:11: PTUBE 5: no pipe has the diameters 0.1 and 0.1 and the wall 0.06");
+  refused_deck("a.bdf", two + "CTUBE,1,5,1,2\nPTUBE,5,1,.1,.06\n", "-o b.h5", 2,
+               "a.bdf:5:11: PTUBE 5: no pipe has the diameters 0.1 and 0.1 and the wall 0.06");
 }
 
 TEST_F(ImportBdfDecks, AnInertiaOfNoBodyStopsNoStaticRun) {
   const std::string bar = two + steel + "CBAR,1,5,1,2,0.,0.,1.\nPBAR,5,1,1.-3,1.-7,4.-7,4.-7\nCONM2,8,2,,5.,,,,,+\n+,1.,,1.,,,9.\n";
   solve(stat + bar + "FORCE,2,2,,1.,0.,0.,1.\n");
   EXPECT_NEAR(moved(2).z(), 1 / (3 * E * 1e-7), 1e-4 / (3 * E * 1e-7));
-  place.write("a.bdf", modes + bar);
-  imported("a.bdf", "--scene-out a.toml");
+  imported_deck("a.bdf", modes + bar, "--scene-out a.toml");
   EXPECT_NE(place.run("hilo-solve a.toml -o run.h5").err.find("no body has this inertia"), std::string::npos);
 }
 
@@ -206,8 +201,7 @@ TEST_F(ImportBdfDecks, AnOrthotropicShellBendsByTheModulusAlongIt) {
   const std::string layers = strip + quads("") + "MAT8,8,4.+9,1.+9,.2,.5+9,.5+9,.5+9\nPCOMP,7,,,,,,,SYM\n,8,.025,90.,,8,.025,";
   solve(layers + "-90.\n", "--thicken");
   EXPECT_NEAR(lift(10), strip_tip(1e9, .5e9), .02 * strip_tip(1e9, .5e9));
-  place.write("a.bdf", layers + "0.\n");
-  imported("a.bdf", "--thicken --scene-out a.toml");
+  imported_deck("a.bdf", layers + "0.\n", "--thicken --scene-out a.toml");
   expect_said("not read: MAT8: layers of several directions (1, a.bdf:");
   EXPECT_NE(place.run("hilo-solve a.toml out.h5 -o run.h5").err.find("import left out MAT8"), std::string::npos);
 }

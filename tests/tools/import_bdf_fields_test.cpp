@@ -52,8 +52,7 @@ TEST_F(ImportBdfFields, EveryFormOfFieldsSaysTheSameModel) {
       hexa.push_back(grid[0]);
     }
     text += entry(form, "CHEXA", hexa) + entry(form, "PSOLID", {"5", "9"}) + entry(form, "MAT1", {"9", "2.1+11", "", ".3", "7.85+3"});
-    place.write("a.bdf", text);
-    const Mesh m = imported("a.bdf");
+    const Mesh m = imported_deck("a.bdf", text);
     ASSERT_EQ(m.n_cells(), 1) << form;
     EXPECT_EQ(static_cast<Shape>(m.shape[0]), Shape::hex20r) << form;
     EXPECT_NEAR(volume(m), 6, 1e-12) << form;
@@ -66,8 +65,7 @@ TEST_F(ImportBdfFields, EveryFormOfFieldsSaysTheSameModel) {
 
 TEST_F(ImportBdfFields, ADensityOfZeroOrNoneIsAbsentAndToldOnce) {
   for (const char* rho : {"0.", "", "0.0"}) {
-    place.write("a.bdf", tet + "PSOLID,1,1\nMAT1,1,2.1+11,,0.3," + rho + "\nMAT1,2,7.+10,,0.3\n");
-    const Mesh m = imported("a.bdf");
+    const Mesh m = imported_deck("a.bdf", tet + "PSOLID,1,1\nMAT1,1,2.1+11,,0.3," + rho + "\nMAT1,2,7.+10,,0.3\n");
     EXPECT_TRUE(std::isnan(m.region_data[0].density)) << rho;
     EXPECT_DOUBLE_EQ(m.region_data[0].E, 2.1e11) << rho;
     expect_said("a.bdf:7: RHO is 0 or blank in 2 of 2 materials (1, 2): no density\n");
@@ -125,8 +123,7 @@ TEST_F(ImportBdfFields, GridsOfEverySystemAreWhereTheClosedFormPutsThem) {
   const bool right = a.cross(b).dot(c) > 0;
   const std::string cell = right ? "CTETRA,1,1,1,2,3,4\n" : "CTETRA,1,1,1,3,2,4\n";
   for (const std::string& text : {systems + grids, grids + systems}) {
-    place.write("a.bdf", text + cell + steel);
-    const Mesh m = imported("a.bdf");
+    const Mesh m = imported_deck("a.bdf", text + cell + steel);
     ASSERT_EQ(m.n_nodes(), 4);
     for (size_t i = 0; i < 4; ++i) EXPECT_LT((m.X[i] - expected[m.node_id[i] - 1]).norm(), 1e-13) << m.node_id[i];
   }
@@ -163,15 +160,14 @@ TEST_F(ImportBdfFields, WhatCannotBeMeantIsRefusedByLine) {
       {"BEGIN SUPER=2\n", "a.bdf:6: BEGIN SUPER=2: superelements are not read (write one model without superelements)"},
   };
   for (const auto& c : cases) {
-    place.write("a.bdf", tet + c.text);
-    refused("a.bdf -o a.h5", 2, c.message);
+    refused_deck("a.bdf", tet + c.text, "-o a.h5", 2, c.message);
   }
 }
 
 // Weights over PARAM WTMASS are masses.
 TEST_F(ImportBdfFields, WeightsBecomeMasses) {
-  place.write("a.bdf", tet + "PSOLID,1,1\nMAT1,1,3.+7,,0.3,0.283\nPARAM,WTMASS,.00259\nPARAM,POST,-1\n");
-  const Mesh m = imported("a.bdf", "--units in-lbf-s");
+  const Mesh m =
+      imported_deck("a.bdf", tet + "PSOLID,1,1\nMAT1,1,3.+7,,0.3,0.283\nPARAM,WTMASS,.00259\nPARAM,POST,-1\n", "--units in-lbf-s");
   // 0.283 lb/in^3 by WTMASS is lbf s^2/in^4
   const double density = 0.283 * 0.00259 * 4.4482216152605 / std::pow(0.0254, 4);
   EXPECT_NEAR(m.region_data[0].density, density, 1e-9 * density);

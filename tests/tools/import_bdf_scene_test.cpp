@@ -8,8 +8,6 @@
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_bdf_scene_test {
 namespace {
@@ -234,8 +232,7 @@ TEST_F(ImportBdfScene, MassesOnSpringsHaveTheFrequencyOfTheClosedForm) {
 TEST_F(ImportBdfScene, SupportsHoldTheComponentsOfTheirGridsOwnAxes) {
   std::string turned = bar();  // axes of the foot: 1 is y, 2 is -x
   for (int g = 1; g <= 4; ++g) turned.insert(turned.find('\n', turned.find(fmt::format("GRID,{},", g))), ",7");
-  place.write("a.bdf", turned + "CORD2R,7,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\nSPC1,1,1,1,2\nSPC,1,3,2,,4,2,-.5\n");
-  imported("a.bdf", "--scene-out s.toml");
+  imported_deck("a.bdf", turned + "CORD2R,7,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\nSPC1,1,1,1,2\nSPC,1,3,2,,4,2,-.5\n", "--scene-out s.toml");
   const Scene s = Scene::load(place / "s.toml");
   ASSERT_EQ(s.entries("motion").size(), 3u);
   EXPECT_EQ(s.entries("motion")[0].texts("components"), std::vector<std::string>{"x"});

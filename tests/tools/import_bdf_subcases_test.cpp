@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include "import_case.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_bdf_subcases_test {
 namespace {
@@ -22,8 +20,7 @@ const std::string cases =
 class ImportBdfSubcases : public test::Import {};
 
 TEST_F(ImportBdfSubcases, EachRunsAsTheOneTakenAlone) {
-  place.write("a.bdf", cases);
-  imported("a.bdf", "--subcase all --scene-out s.toml");
+  imported_deck("a.bdf", cases, "--subcase all --scene-out s.toml");
   EXPECT_FALSE(std::filesystem::exists(place / "s.toml"));
   for (const char* row : {"1        s_1.toml      1        1         0  ", "4        s_4.toml      1        1         0  ",
                           "9        s_9.toml      1        1         0  "})
@@ -51,20 +48,19 @@ TEST_F(ImportBdfSubcases, EachRunsAsTheOneTakenAlone) {
 }
 
 TEST_F(ImportBdfSubcases, MistakesAreNamed) {
-  place.write("a.bdf", cases);
-  refused("a.bdf -o b.h5 --subcase each", 1, "--subcase each: a number, or all (see hilo-import --help)");
+  refused_deck("a.bdf", cases, "-o b.h5 --subcase each", 1, "--subcase each: a number, or all (see hilo-import --help)");
   refused("a.bdf -o b.h5 --subcase all --thicken", 1,
           "--subcase all beside --thicken: the pairs of nodes depend on the supports (--subcase N, one after the other)");
   std::string text = cases;
   text.replace(text.find("SUBCASE 9"), 9, "SUBCASE 4");
-  place.write("a.bdf", text);
-  refused("a.bdf -o b.h5 --subcase all", 2, "a.bdf:12: SUBCASE 4 is given twice (number each once, or take the first by --subcase)");
-  place.write("a.bdf", cases.substr(cases.find("GRID,1")));
-  refused("a.bdf -o b.h5 --subcase all", 1, "--subcase all: a.bdf has no SUBCASE (leave --subcase away)");
+  refused_deck("a.bdf", text, "-o b.h5 --subcase all", 2,
+               "a.bdf:12: SUBCASE 4 is given twice (number each once, or take the first by --subcase)");
+  refused_deck("a.bdf", cases.substr(cases.find("GRID,1")), "-o b.h5 --subcase all", 1,
+               "--subcase all: a.bdf has no SUBCASE (leave --subcase away)");
   text = "SOL 101\nCEND\n";
   for (int i = 1; i <= 1001; ++i) text += fmt::format("SUBCASE {}\n", i);
-  place.write("a.bdf", text + cases.substr(cases.find("BEGIN BULK")));
-  refused("a.bdf -o b.h5 --subcase all", 2, "a.bdf:1003: more than 1000 subcases (take some of them by --subcase N)");
+  refused_deck("a.bdf", text + cases.substr(cases.find("BEGIN BULK")), "-o b.h5 --subcase all", 2,
+               "a.bdf:1003: more than 1000 subcases (take some of them by --subcase N)");
 }
 
 }  // namespace

@@ -44,8 +44,7 @@ ENDDATA
 )";
 
 TEST_F(ImportBdf, SmallLargeAndFreeFieldsAreRead) {
-  place.write("a.bdf", small);
-  const Mesh m = imported("a.bdf");
+  const Mesh m = imported_deck("a.bdf", small);
   EXPECT_EQ(m.region_name, (std::vector<std::string>{"lower hull", "pid_6"}));
   EXPECT_NEAR(volume(m), 1.5, 1e-14);
   EXPECT_DOUBLE_EQ(m.region_data[0].E, 2.1e11);
@@ -92,8 +91,7 @@ TEST_F(ImportBdf, WrongEntriesAreNamedByLine) {
        "a.bdf: no elements (supported: CTETRA, CPENTA, CHEXA, CROD, CONROD; as rigid regions CTRIA3, CTRIA6, CQUAD4, CQUAD8, CBAR, CBEAM)"},
   };
   for (const auto& c : cases) {
-    place.write("a.bdf", c.text);
-    refused("a.bdf -o a.h5", 2, c.message);
+    refused_deck("a.bdf", c.text, "-o a.h5", 2, c.message);
   }
 }
 

@@ -17,8 +17,7 @@ const std::string head = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\n";
 class ImportBdfTold : public test::Import {
  protected:
   Scene scene(const std::string& text, const std::string& options = "") {
-    place.write("a.bdf", text);
-    imported("a.bdf", "--scene-out s.toml " + options);
+    imported_deck("a.bdf", text, "--scene-out s.toml " + options);
     return Scene::load(place / "s.toml");
   }
   void told(const std::string& text, const std::string& what) {
@@ -75,11 +74,9 @@ TEST_F(ImportBdfTold, ARangeOfSupportsHoldsTheGridsThatAreThere) {
 
 TEST_F(ImportBdfTold, EntriesBehindAnIncludedEndAreNotLost) {
   place.write("end.bdf", cube + "ENDDATA\n");
-  place.write("b.bdf", head + "INCLUDE 'end.bdf'\n$ nothing\n" + "\nENDDATA\n");
-  imported("b.bdf");
-  place.write("c.bdf", head + "INCLUDE 'end.bdf'\n$ nothing\n" + foot);
-  refused("c.bdf -o no.h5", 2,
-          "end.bdf:13: ENDDATA ends an included file, but entries follow at c.bdf:8 (remove it from the included file)");
+  imported_deck("b.bdf", head + "INCLUDE 'end.bdf'\n$ nothing\n" + "\nENDDATA\n");
+  refused_deck("c.bdf", head + "INCLUDE 'end.bdf'\n$ nothing\n" + foot, "-o no.h5", 2,
+               "end.bdf:13: ENDDATA ends an included file, but entries follow at c.bdf:8 (remove it from the included file)");
 }
 
 TEST_F(ImportBdfTold, WhatHasNoPlaceInASceneIsNamed) {
@@ -113,10 +110,8 @@ TEST_F(ImportBdfTold, AMassOnAMeanIsSharedWhereItStandsInTheMean) {
 TEST_F(ImportBdfTold, PropertiesOfSpringsHaveNumbersByCard) {
   const std::string two = head + cube + foot + "CELAS1,70,8,,,7,1\nPELAS,8,5.\n";
   EXPECT_DOUBLE_EQ(scene(two + "PBUSH,8,K,1.,2.,3.\nPDAMP,8,9.\n").entries("joint")[0].number("stiffness"), 5);
-  place.write("b.bdf", two + "PELAS,8,6.\n");
-  refused("b.bdf -o no.h5", 2, "b.bdf:21:7: PELAS 8 is given twice (number each property once)");
-  place.write("b.bdf", head + cube + "CBUSH,70,8,7,,,,,0\nPELAS,8,6.\n");
-  refused("b.bdf -o no.h5", 2, "b.bdf:18: CBUSH 70: no PBUSH 8");
+  refused_deck("b.bdf", two + "PELAS,8,6.\n", "-o no.h5", 2, "b.bdf:21:7: PELAS 8 is given twice (number each property once)");
+  refused_deck("b.bdf", head + cube + "CBUSH,70,8,7,,,,,0\nPELAS,8,6.\n", "-o no.h5", 2, "b.bdf:18: CBUSH 70: no PBUSH 8");
 }
 
 TEST_F(ImportBdfTold, APressureAlongACurvedSystemPointsAsAtTheCentreOfItsFacet) {

@@ -42,6 +42,15 @@ class Import : public ToolCase {
     out = ran.out, err = ran.err;
     return read_mesh_file(place / "out.h5").mesh;
   }
+  /// The same of a file with this text.
+  Mesh imported_deck(const std::string& file, const std::string& text, const std::string& options = "") {
+    place.write(file, text);
+    return imported(file, options);
+  }
+  void refused_deck(const std::string& file, const std::string& text, const std::string& arguments, int exit, const std::string& message) {
+    place.write(file, text);
+    refused(file + " " + arguments, exit, message);
+  }
   /// Imports a deck with its scene, and runs the scene.
   void solve(const std::string& text, const std::string& file = "a.inp", const std::string& options = "", const std::string& to_run = "") {
     place.write(file, text);

@@ -2,7 +2,6 @@
 // The command itself: options, tables, exit codes, and a damaged CAD file.
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_cli_test {
 namespace {

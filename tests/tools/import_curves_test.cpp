@@ -4,10 +4,8 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 #include "import_case.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_curves_test {
 namespace {
@@ -83,9 +81,8 @@ TEST_F(ImportCurves, WhatIsNoBeamIsRefused) {
   refused_by("rail=circle:diameter=1,shear=[0.9]",
              "--beams rail=circle:diameter=1,shear=[0.9]: shear is written into the scene (leave it out here)");
   refused_by("beam=circle:diameter=1", "--beams beam: no curve group of this name has lines");
-  place.write("a.inp", "*NODE\n1,0,0,0\n");
-  refused("a.inp -o b.h5 --beams rail=circle:diameter=1", 1,
-          "--beams is for curves of a geometry or .msh file, a.inp is none (beams of a deck stand in its scene)");
+  refused_deck("a.inp", "*NODE\n1,0,0,0\n", "-o b.h5 --beams rail=circle:diameter=1", 1,
+               "--beams is for curves of a geometry or .msh file, a.inp is none (beams of a deck stand in its scene)");
 }
 
 }  // namespace

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shells of decks that fold, meet, change their thickness, turn at their supports or carry beams: frames of strips against beam theory.
-#include <fmt/format.h>
-
 #include "fold_frames.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_folds_test {
 namespace {
@@ -80,11 +77,12 @@ TEST_F(ImportFolds, ShortRowsBendTooLittleAndAreToldOf) {
     EXPECT_EQ(err.find("stand in rows"), std::string::npos) << err;
   }
   // an angle of two quadratic shells, each as four: two between the clamp and the fold, and two to the free edge
-  place.write("angle.inp",
-              "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,.5,0,0\n6,1,.5,0\n7,.5,1,0\n8,0,.5,0\n9,1,0,1\n10,1,1,1\n11,1,0,.5\n12,1,.5,1\n"
-              "13,1,1,.5\n*ELEMENT, TYPE=S8R, ELSET=E\n1,1,2,3,4,5,6,7,8\n2,2,9,10,3,11,12,13,6\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,.3\n"
-              "*SHELL SECTION, ELSET=E, MATERIAL=M\n.01\n*BOUNDARY\n1,1,6\n4,1,6\n8,1,6\n");
-  imported("angle.inp", "--thicken");
+  imported_deck(
+      "angle.inp",
+      "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,.5,0,0\n6,1,.5,0\n7,.5,1,0\n8,0,.5,0\n9,1,0,1\n10,1,1,1\n11,1,0,.5\n12,1,.5,1\n"
+      "13,1,1,.5\n*ELEMENT, TYPE=S8R, ELSET=E\n1,1,2,3,4,5,6,7,8\n2,2,9,10,3,11,12,13,6\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,.3\n"
+      "*SHELL SECTION, ELSET=E, MATERIAL=M\n.01\n*BOUNDARY\n1,1,6\n4,1,6\n8,1,6\n",
+      "--thicken");
   expect_said("warning: 4 shells stand in rows of less than 8 from a fold or clamp to the next; the shortest has 2");
 }
 
@@ -198,13 +196,13 @@ TEST_F(ImportFolds, APressurePushesAlongTheNormal) {
 
 // Four plates, simply supported by each other, of three half waves by symmetry: k = 4, the value of textbooks.
 TEST_F(ImportFolds, ASquareTubeBuckles) {
-  place.write("tube.geo",
-              "Point(1) = {0, 0, 0}; Point(2) = {0, .2, 0}; Point(3) = {0, .2, .2}; Point(4) = {0, 0, .2};\n"
-              "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Transfinite Curve{1:4} = 9;\n"
-              "s() = Extrude {.3, 0, 0} { Curve{1:4}; Layers{12}; Recombine; };\n"
-              "Physical Surface(\"tube\") = {s(1), s(5), s(9), s(13)};\n"
-              "Physical Curve(\"middle\") = {1:4}; Physical Curve(\"end\") = {s(0), s(4), s(8), s(12)};\n");
-  imported("tube.geo", "--thickness 0.002");
+  imported_deck("tube.geo",
+                "Point(1) = {0, 0, 0}; Point(2) = {0, .2, 0}; Point(3) = {0, .2, .2}; Point(4) = {0, 0, .2};\n"
+                "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Transfinite Curve{1:4} = 9;\n"
+                "s() = Extrude {.3, 0, 0} { Curve{1:4}; Layers{12}; Recombine; };\n"
+                "Physical Surface(\"tube\") = {s(1), s(5), s(9), s(13)};\n"
+                "Physical Curve(\"middle\") = {1:4}; Physical Curve(\"end\") = {s(0), s(4), s(8), s(12)};\n",
+                "--thickness 0.002");
   EXPECT_EQ(err.find("share no node"), std::string::npos) << err;
   place.write("tube.toml",
               "[material.steel]\nE = 2.1e11\nnu = 0.0\ndensity = 7850\n[region.tube]\nmaterial = \"steel\"\n"
@@ -234,8 +232,7 @@ const std::string tee =
 const std::string rubber = "[material.rubber]\nE = 2e7\nnu = 0.0\ndensity = 1000\n[region.\"*\"]\nmaterial = \"rubber\"\n";
 
 TEST_F(ImportFolds, ComponentsOfALineAreHeldOnceAndTheirReactionIsWhole) {
-  place.write("tee.geo", tee);
-  EXPECT_EQ(imported("tee.geo", "--thickness 0.05").block_name.size(), 5u);
+  EXPECT_EQ(imported_deck("tee.geo", tee, "--thickness 0.05").block_name.size(), 5u);
   place.write("pull.toml", rubber +
                                "[[motion]]\nkind = \"fixed\"\nname = \"front\"\non = \"front\"\ncomponents = [\"y\", \"z\"]\n"
                                "[[motion]]\nkind = \"fixed\"\nname = \"side\"\non = \"side\"\ncomponents = [\"x\"]\n"
@@ -251,8 +248,7 @@ TEST_F(ImportFolds, ComponentsOfALineAreHeldOnceAndTheirReactionIsWhole) {
 }
 
 TEST_F(ImportFolds, AThrownTeeKeepsItsEnergyAndMomenta) {
-  place.write("tee.geo", tee);
-  imported("tee.geo", "--thickness 0.05");
+  imported_deck("tee.geo", tee, "--thickness 0.05");
   place.write("throw.toml", rubber +
                                 "[[initial]]\non = [\"up\"]\nvelocity = [2, 0, 3]\nspin = [3, 2, 5]\nabout = [0, 0, 0]\n"
                                 "[[initial]]\non = [\"left\", \"right\"]\nvelocity = [0, 1, 0]\n[[probe]]\nname = \"top\"\non = \"top\"\n"
@@ -280,15 +276,14 @@ TEST_F(ImportFolds, AThrownTeeKeepsItsEnergyAndMomenta) {
 TEST_F(ImportFolds, WhatBlocksJoinIsNoLoosePiece) {
   Frame f;
   f.strip(0, 0, 0, 1, "LEGS"), f.strip(0, 1, 1, 1, "ROOF"), f.strip(1, 1, 1, 0, "LEGS");
-  place.write("deck.inp", f.deck("*NSET, NSET=ROOT\n" + f.nodes_at(0, 0), "ROOT,1,6\n", f.load(1, 0, 3, 1.0)));
-  imported("deck.inp", "--thicken --scene-out scene.toml");
+  imported_deck("deck.inp", f.deck("*NSET, NSET=ROOT\n" + f.nodes_at(0, 0), "ROOT,1,6\n", f.load(1, 0, 3, 1.0)),
+                "--thicken --scene-out scene.toml");
   const auto ran = succeeded(place.run("hilo-tag out.h5 --linear '*' -o tags.h5"));
   EXPECT_EQ(ran.err.find("pieces"), std::string::npos) << ran.err;
 }
 
 TEST_F(ImportFolds, ABlockHasAName) {
-  place.write("tee.geo", tee);
-  imported("tee.geo", "--thickness 0.05");
+  imported_deck("tee.geo", tee, "--thickness 0.05");
   const std::string scene = rubber +
                             "[[motion]]\nkind = \"fixed\"\nname = \"side\"\non = \"side\"\n[time]\nanalysis = \"static\"\n"
                             "[[load]]\nkind = \"force\"\nname = \"f\"\nforce = [0, 0, 0.01]\non = ";
@@ -302,15 +297,12 @@ TEST_F(ImportFolds, ABlockHasAName) {
     EXPECT_NEAR(f[f.size() - 4], -0.01, 1e-8);
   }
   place.write("w.toml", scene + "\"block_99\"\n");
-  const auto wrong = place.run("hilo-solve --quiet w.toml out.h5 -o w.h5");
-  EXPECT_EQ(wrong.exit, 2);
-  EXPECT_NE(wrong.err.find("no region, set or body \"block_99\""), std::string::npos) << wrong.err;
+  expect_end(place.run("hilo-solve --quiet w.toml out.h5 -o w.h5"), 2, "no region, set or body \"block_99\"");
 }
 
 // One of three linear regions that are one body moves at the start: it took the whole body along.
 TEST_F(ImportFolds, APartOfALinearBodyHasAVelocityOfItsOwn) {
-  place.write("tee.geo", tee);
-  imported("tee.geo", "--thickness 0.05");
+  imported_deck("tee.geo", tee, "--thickness 0.05");
   ASSERT_EQ(place.run("hilo-tag out.h5 --rest linear -o tags.h5").exit, 0);
   place.write("part.toml", rubber + "[[initial]]\non = [\"up\"]\nvelocity = [0, 0, 1]\n[time]\nend = 0.01\nstep = 0.01\n");
   succeeded(place.run("hilo-solve --quiet part.toml tags.h5 -o run.h5"));

@@ -2,10 +2,7 @@
 // Meshes and geometries that go through gmsh, written here by gmsh itself: named groups, shapes, orders and formats survive.
 #include <fmt/format.h>
 
-#include <sstream>
-
 #include "import_case.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_gmsh_test {
 namespace {
@@ -149,15 +146,14 @@ TEST_F(ImportGmsh, LinesOfThreeNodesOfAUniversalFileAreTheirCorners) {
            "    -1\n    -1\n  2467\n1 0 0 0 0 0 0 1\nrail\n8 2 0 0\n    -1\n";
   };
   for (const int descriptor : {22, 24}) {
-    place.write("a.unv", file(descriptor, "1 9 2"));
-    const Mesh m = imported("a.unv");
+    const Mesh m = imported_deck("a.unv", file(descriptor, "1 9 2"));
     ASSERT_TRUE(m.node_sets.contains("rail")) << descriptor << err;
     const auto& rail = m.node_sets.at("rail");
     ASSERT_EQ(rail.size(), 2u) << descriptor;
     EXPECT_EQ(m.X[rail[0]], Vec3(0, 0, 0)) << descriptor;
     EXPECT_EQ(m.X[rail[1]], Vec3(1, 0, 0)) << descriptor << ": the middle is of no cell";
-    place.write("a.unv", file(descriptor, "1 2"));
-    refused("a.unv -o b.h5", 2, fmt::format("a.unv:26:1: element 2: descriptor {} has 3 nodes, not 2", descriptor));
+    refused_deck("a.unv", file(descriptor, "1 2"), "-o b.h5", 2,
+                 fmt::format("a.unv:26:1: element 2: descriptor {} has 3 nodes, not 2", descriptor));
   }
 }
 
@@ -168,13 +164,14 @@ TEST_F(ImportGmsh, UnitsOfAUniversalFileAreTakenAndEmptyGroupsAreTold) {
     return "    -1\n   164\n         5mm (milli-newton)            2\n  " + factor +
            "  1.0000000000000000D+03  1.0000000000000000D+00\n  2.7314999999999998D+02\n    -1\n";
   };
-  place.write("mm.unv", units("1.0000000000000000D+03") + text);
-  EXPECT_NEAR(volume(imported("mm.unv")), 2e-9, 1e-20);
+  EXPECT_NEAR(volume(imported_deck("mm.unv", units("1.0000000000000000D+03") + text)), 2e-9, 1e-20);
   EXPECT_NEAR(volume(imported("mm.unv", "--units m-kg-s")), 2, 1e-12);
   expect_said("the file says that its unit of length is 0.001 m (dataset 164); taken as m-kg-s, as --units says");
-  place.write("empty.unv",
-              text + "    -1\n  2467\n        99         0         0         0         0         0         0         0\nnothing\n    -1\n");
-  EXPECT_NEAR(volume(imported("empty.unv")), 2, 1e-12);
+  EXPECT_NEAR(
+      volume(imported_deck(
+          "empty.unv",
+          text + "    -1\n  2467\n        99         0         0         0         0         0         0         0\nnothing\n    -1\n")),
+      2, 1e-12);
   expect_said("group \"nothing\" is empty: left out");
 }
 
@@ -198,8 +195,7 @@ TEST_F(ImportGmsh, MirroredCellsAreTurnedWithTheirFacets) {
         const bool three = static_cast<bool>(in >> x >> y >> z) && !(in >> rest);
         mirrored += nodes && three ? fmt::format("{:.17g} {:.17g} {:.17g}\n", x, y, -z) : line + "\n";
       }
-      place.write("b.msh", mirrored);
-      const Mesh m = imported("b.msh");
+      const Mesh m = imported_deck("b.msh", mirrored);
       EXPECT_NE(err.find("cells were numbered as in a mirror: turned"), std::string::npos) << where << err;
       EXPECT_NEAR(volume(m), 2, 1e-12) << where;
       EXPECT_LT((vector_area(m, m.facet_sets.at("inlet")) - Vec3(-1, 0, 0)).norm(), 1e-12) << where;
@@ -209,8 +205,7 @@ TEST_F(ImportGmsh, MirroredCellsAreTurnedWithTheirFacets) {
 }
 
 TEST_F(ImportGmsh, AScriptIsMeshedWithItsParametersSizeAndOrder) {
-  place.write("a.geo", boxes("hex"));
-  EXPECT_EQ(imported("a.geo").n_cells(), 16);
+  EXPECT_EQ(imported_deck("a.geo", boxes("hex")).n_cells(), 16);
   EXPECT_EQ(imported("a.geo", "--define N=3").n_cells(), 54);
   const Mesh m = imported("a.geo", "--define N=1 --order 2");
   EXPECT_EQ(static_cast<Shape>(m.shape[0]), Shape::hex20r);
@@ -220,18 +215,15 @@ TEST_F(ImportGmsh, AScriptIsMeshedWithItsParametersSizeAndOrder) {
 }
 
 TEST_F(ImportGmsh, OptionsThatWouldDoNothingAreErrors) {
-  place.write("a.geo", boxes("hex"));
-  refused("a.geo -o a.h5 --define M=3", 1, "--define M: the script has no such name (did you mean \"N\"?)");
-  place.write("b.geo", "Include \"a.geo\";\n");
-  refused("b.geo -o a.h5 --define M=3", 1, "--define M: the script has no such name (did you mean \"N\"?)");
+  refused_deck("a.geo", boxes("hex"), "-o a.h5 --define M=3", 1, "--define M: the script has no such name (did you mean \"N\"?)");
+  refused_deck("b.geo", "Include \"a.geo\";\n", "-o a.h5 --define M=3", 1, "--define M: the script has no such name (did you mean \"N\"?)");
   mesh(boxes("hex"), "a.msh");
   refused("a.msh -o a.h5 --define N=3", 1, "--define is for .geo scripts");
   refused("a.msh -o a.h5 --size 3", 1, "--size is for a geometry, a.msh is a mesh");
 }
 
 TEST_F(ImportGmsh, AGeometryWithoutGroupsHasARegionPerVolume) {
-  place.write("a.geo", boxes("tet", false));
-  const Mesh m = imported("a.geo");
+  const Mesh m = imported_deck("a.geo", boxes("tet", false));
   EXPECT_EQ(m.region_name, (std::vector<std::string>{"volume_1", "volume_2"}));
   expect_said("no volume groups: each of 2 volumes is a region");
   EXPECT_EQ(imported("a.geo", "--rest all").region_name, std::vector<std::string>{"all"});
@@ -249,17 +241,17 @@ TEST_F(ImportGmsh, CadFilesAreMeshedAndNothingButTheTableIsOnStdout) {
 }
 
 TEST_F(ImportGmsh, CurvedCellsThatTurnInsideOutGetStraightEdges) {
-  place.write("ring.geo",
-              "SetFactory(\"OpenCASCADE\");\nCylinder(1) = {0,0,0, 0,0,0.3, 1};\nCylinder(2) = {0,0,0, 0,0,0.3, 0.95};\n"
-              "BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\nMesh.MeshSizeMin = 0.5;\nMesh.MeshSizeMax = 0.8;\n");
-  const Mesh m = imported("ring.geo", "--order 2");
+  const Mesh m = imported_deck(
+      "ring.geo",
+      "SetFactory(\"OpenCASCADE\");\nCylinder(1) = {0,0,0, 0,0,0.3, 1};\nCylinder(2) = {0,0,0, 0,0,0.3, 0.95};\n"
+      "BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\nMesh.MeshSizeMin = 0.5;\nMesh.MeshSizeMax = 0.8;\n",
+      "--order 2");
   expect_said("cells that a curved surface turned inside out have straight edges");
   for (std::int64_t c = 0; c < m.n_cells(); ++c) EXPECT_GT(quality(m, c).scaled_jacobian, 0);
 }
 
 TEST_F(ImportGmsh, CellsInTwoGroupsGoToTheFirstAndBothStayNamed) {
-  place.write("a.geo", boxes("hex") + "Physical Volume(\"both\", 20) = {a(1), b(1)};\n");
-  const Mesh m = imported("a.geo");
+  const Mesh m = imported_deck("a.geo", boxes("hex") + "Physical Volume(\"both\", 20) = {a(1), b(1)};\n");
   EXPECT_EQ(m.region_name, (std::vector<std::string>{"left", "volume_7"})) << "the groups with the lower tags";
   EXPECT_EQ(m.cell_sets.at("both").size(), 16u);
   expect_said("16 of 16 cells of \"both\" belong to another region too");
@@ -269,12 +261,10 @@ TEST_F(ImportGmsh, ACurveApartFromTheSolidsIsARegionOfBars) {
   const std::string cable =
       "p = newp; Point(p) = {2,1,1}; Point(p+1) = {5,1,1}; l = newl; Line(l) = {p,p+1}; Transfinite Curve{l} = 4;\nPhysical "
       "Curve(\"cable\") = {l};\n";
-  place.write("a.geo", boxes("hex") + cable);
-  const Mesh m = imported("a.geo");
+  const Mesh m = imported_deck("a.geo", boxes("hex") + cable);
   EXPECT_EQ(cells_of(m, "cable"), 3);
   EXPECT_TRUE(m.node_sets.count("edge")) << "a curve on a solid is a node set";
-  place.write("b.geo", cable);
-  const Mesh bars = imported("b.geo");  // without solids every curve group is one
+  const Mesh bars = imported_deck("b.geo", cable);  // without solids every curve group is one
   EXPECT_EQ(bars.region_name, std::vector<std::string>{"cable"});
   EXPECT_NEAR(volume(bars), 3, 1e-12) << "the length";
 }
@@ -299,19 +289,19 @@ TEST_F(ImportGmsh, AFlatMeshIsRefusedByEveryFormat) {
 
 TEST_F(ImportGmsh, WrongFilesAreNamedAndLeaveNothing) {
   refused("absent.msh -o a.h5", 2, "absent.msh: no such file");
-  place.write("a.xyz", "x");
-  refused("a.xyz -o a.h5", 2,
-          "a.xyz: no reader for \".xyz\" files (there is one for .inp .bdf .nas .dat .fem .unv .vtk .vtu .msh .mesh .med .rmed .exo .ex2 "
-          ".exii .e "
-          ".g .gen .stl .geo .step .stp "
-          ".brep .iges .igs .inp.gz)");
-  place.write("a.stl",
-              "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
-  refused("a.stl -o a.h5", 2,
-          "a.stl: 1 flat cells (triangles, quadrangles) and no volume (a surface alone, as in an STL, has no volume: mesh its inside; "
-          "lines beside flat cells are their edges, not bars)");
-  place.write("a.geo", "Point(1) = {0,0,0};\n");
-  refused("a.geo -o a.h5", 2, "a.geo: no volume to mesh (the geometry holds points, curves or surfaces only)");
+  refused_deck(
+      "a.xyz", "x", "-o a.h5", 2,
+      "a.xyz: no reader for \".xyz\" files (there is one for .inp .bdf .nas .dat .fem .unv .vtk .vtu .msh .mesh .med .rmed .exo .ex2 "
+      ".exii .e "
+      ".g .gen .stl .geo .step .stp "
+      ".brep .iges .igs .inp.gz)");
+  refused_deck("a.stl",
+               "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n",
+               "-o a.h5", 2,
+               "a.stl: 1 flat cells (triangles, quadrangles) and no volume (a surface alone, as in an STL, has no volume: mesh its inside; "
+               "lines beside flat cells are their edges, not bars)");
+  refused_deck("a.geo", "Point(1) = {0,0,0};\n", "-o a.h5", 2,
+               "a.geo: no volume to mesh (the geometry holds points, curves or surfaces only)");
   mesh(boxes("hex") + "Physical Volume(\"rest\") = {};\n", "whole.msh");
   const std::string text = test::text_of(place / "whole.msh");
   place.write("cut.msh", text.substr(0, text.size() / 2));
@@ -321,9 +311,7 @@ TEST_F(ImportGmsh, WrongFilesAreNamedAndLeaveNothing) {
   EXPECT_EQ(ran.err.rfind("hilo-import: cut.msh", 0), 0u) << ran.err;
   EXPECT_EQ(place.files(), before);
   place.write("b.geo", "Point(1) = {0,0,0\n");
-  const auto syntax = place.run("hilo-import b.geo -o a.h5");
-  EXPECT_EQ(syntax.exit, 2);
-  EXPECT_NE(syntax.err.find("b.geo"), std::string::npos) << syntax.err;
+  expect_end(place.run("hilo-import b.geo -o a.h5"), 2, "b.geo");
 }
 
 TEST_F(ImportGmsh, CellsInNoGroupAreARegionAndThatIsSaid) {
@@ -331,8 +319,7 @@ TEST_F(ImportGmsh, CellsInNoGroupAreARegionAndThatIsSaid) {
   // physical tag 7 of the second box becomes 0: its cells are in no group
   std::string text = test::text_of(place / "a.msh");
   for (size_t at = 0; (at = text.find(" 5 2 7 ", at)) != std::string::npos;) text.replace(at, 7, " 5 2 0 ");
-  place.write("a.msh", text);
-  EXPECT_EQ(test::cells_of(imported("a.msh"), "rest"), 8);
+  EXPECT_EQ(test::cells_of(imported_deck("a.msh", text), "rest"), 8);
   expect_said("8 of 16 cells are in no region, the first is cell 20: they are region \"rest\"; --rest gives it another name\n");
   const Mesh m = imported("a.msh", "--rest hub");
   EXPECT_EQ(cells_of(m, "hub"), 8);
@@ -359,16 +346,14 @@ TEST_F(ImportGmsh, PartitionsArePutTogether) {
            "$EndPartitionedEntities\n$Nodes\n1 5 1 5\n3 2 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n" +
            second;
   };
-  place.write("a.msh",
-              file(2, "$Elements\n4 4 1 4\n2 2 2 1\n1 1 2 3\n2 3 2 1\n2 2 3 4\n3 2 4 1\n3 1 2 3 4\n3 3 4 1\n4 2 3 4 5\n$EndElements\n"));
-  const Mesh m = imported("a.msh");
+  const Mesh m = imported_deck(
+      "a.msh", file(2, "$Elements\n4 4 1 4\n2 2 2 1\n1 1 2 3\n2 3 2 1\n2 2 3 4\n3 2 4 1\n3 1 2 3 4\n3 3 4 1\n4 2 3 4 5\n$EndElements\n"));
   EXPECT_EQ(cells_of(m, "part"), 2);
   EXPECT_NEAR(volume(m), 1. / 6 + 1. / 3, 1e-15);
   EXPECT_EQ(m.facet_sets.at("foot").size(), 1U);
   EXPECT_EQ(m.facet_sets.size(), 1U) << "the border between the parts is no set";
   expect_said("the mesh is in 2 parts, which are put together");
-  place.write("b.msh", file(2, "$Elements\n1 1 3 3\n3 2 4 1\n3 1 2 3 4\n$EndElements\n"));
-  imported("b.msh");
+  imported_deck("b.msh", file(2, "$Elements\n1 1 3 3\n3 2 4 1\n3 1 2 3 4\n$EndElements\n"));
   expect_said("warning: the file holds 1 of the 2 parts of its mesh");
 }
 

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // *CONTACT PAIR, *SURFACE INTERACTION, *FRICTION and *CONTACT of .inp decks.  Truth: two cubes on each other, by hand.
-#include <string>
-
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_contact_test {
 namespace {
@@ -57,8 +53,7 @@ TEST_F(ImportInpContact, GeneralContactIsOfAll) {
 
 TEST_F(ImportInpContact, LawsOfOtherProgramsAreTold) {
   const auto scene = [&](const std::string& cards) {
-    place.write("a.inp", cubes + cards + press);
-    imported("a.inp", "--scene-out s.toml");
+    imported_deck("a.inp", cubes + cards + press, "--scene-out s.toml");
     return test::text_of(place / "s.toml");
   };
   const std::string pair = "*CONTACT PAIR, INTERACTION=dry\nunder, table\n*SURFACE INTERACTION, NAME=dry\n";
@@ -70,8 +65,7 @@ TEST_F(ImportInpContact, LawsOfOtherProgramsAreTold) {
   const std::string both = scene("*CONTACT PAIR, INTERACTION=dry\nunder, table\ntable, under\n*SURFACE INTERACTION, NAME=dry\n");
   EXPECT_EQ(both.find("[[contact]]"), both.rfind("[[contact]]")) << "points of both meet the other anyhow";
   expect_said("a contact has these two surfaces already");
-  EXPECT_NE(scene("*CONTACT PAIR, INTERACTION=dry\nunder,\n*SURFACE INTERACTION, NAME=dry\n").find("a = \"under\"\nb = \"under\""),
-            std::string::npos);
+  expect_words(scene("*CONTACT PAIR, INTERACTION=dry\nunder,\n*SURFACE INTERACTION, NAME=dry\n"), "a = \"under\"\nb = \"under\"");
   for (const char* odd : {"*FRICTION, USER\n", "*FRICTION, EXPONENTIAL DECAY\n.3, .2, 1.\n", "*SURFACE BEHAVIOR, NO SEPARATION\n"}) {
     EXPECT_NE(scene(pair + odd).find("loss = \"tie\""), std::string::npos) << odd;
     EXPECT_EQ(place.run("hilo-solve --quiet s.toml -o run.h5").exit, 2) << odd;
@@ -81,9 +75,7 @@ TEST_F(ImportInpContact, LawsOfOtherProgramsAreTold) {
 TEST_F(ImportInpContact, MistakesAreToldWithTheirPlace) {
   const auto refused = [&](const std::string& cards, const std::string& expected) {
     place.write("a.inp", cubes + cards + press);
-    const auto ran = place.run("hilo-import a.inp -o out.h5 --scene-out s.toml");
-    EXPECT_EQ(ran.exit, 2) << ran.err;
-    EXPECT_NE(ran.err.find(expected), std::string::npos) << ran.err;
+    expect_end(place.run("hilo-import a.inp -o out.h5 --scene-out s.toml"), 2, expected);
   };
   refused("*CONTACT PAIR, INTERACTION=wet\nunder, table\n*SURFACE INTERACTION, NAME=wat\n", "did you mean \"wat\"?");
   refused("*SURFACE INTERACTION, NAME=a\n*SURFACE INTERACTION, NAME=A\n", "is given twice");

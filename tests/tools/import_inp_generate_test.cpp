@@ -14,10 +14,7 @@ namespace {
 
 class ImportInpGenerate : public test::Import {
  protected:
-  Mesh read(const std::string& text) {
-    place.write("a.inp", text);
-    return imported("a.inp", "--rest all");
-  }
+  Mesh read(const std::string& text) { return imported_deck("a.inp", text, "--rest all"); }
   static std::map<std::int64_t, Vec3> nodes_of(const Mesh& m) {
     std::map<std::int64_t, Vec3> nodes;
     for (size_t a = 0; a < m.X.size(); ++a) nodes[m.node_id[a]] = m.X[a];
@@ -117,12 +114,13 @@ TEST_F(ImportInpGenerate, EveryKindOfElementIsCopied) {
   EXPECT_EQ(m.n_cells(), 8);
   EXPECT_NEAR(volume(m), 4 / 3., 1e-12);
 
-  place.write("s.inp", lower +
-                           "*ELEMENT, TYPE=SPRINGA, ELSET=s\n7, 1, 11\n*ELGEN, ELSET=s\n7, 3, 1, 2\n*SPRING, ELSET=s\n\n100.\n"
-                           "*ELEMENT, TYPE=B31, ELSET=b\n1, 1, 2\n*ELGEN, ELSET=b\n1, 3\n*MATERIAL, NAME=m\n*ELASTIC\n1e9, 0.\n"
-                           "*BEAM SECTION, ELSET=b, MATERIAL=m, SECTION=RECT\n.1, .1\n0, 0, 1\n*ELEMENT, TYPE=B31, ELSET=b\n50, 11, "
-                           "12\n*ELGEN, ELSET=b\n50, 3\n");
-  imported("s.inp", "--scene-out s.toml");
+  imported_deck("s.inp",
+                lower +
+                    "*ELEMENT, TYPE=SPRINGA, ELSET=s\n7, 1, 11\n*ELGEN, ELSET=s\n7, 3, 1, 2\n*SPRING, ELSET=s\n\n100.\n"
+                    "*ELEMENT, TYPE=B31, ELSET=b\n1, 1, 2\n*ELGEN, ELSET=b\n1, 3\n*MATERIAL, NAME=m\n*ELASTIC\n1e9, 0.\n"
+                    "*BEAM SECTION, ELSET=b, MATERIAL=m, SECTION=RECT\n.1, .1\n0, 0, 1\n*ELEMENT, TYPE=B31, ELSET=b\n50, 11, "
+                    "12\n*ELGEN, ELSET=b\n50, 3\n",
+                "--scene-out s.toml");
   const std::string scene = test::text_of(place / "s.toml");
   for (const char* name : {"SPRINGA_7", "SPRINGA_9", "SPRINGA_11", "B31_1", "B31_2", "B31_3", "B31_50", "B31_52"})
     EXPECT_NE(scene.find(fmt::format("\"{}\"", name)), std::string::npos) << name << scene;

@@ -4,8 +4,6 @@
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_mpc_test {
 namespace {
@@ -136,16 +134,13 @@ TEST_F(ImportInpMpc, WhatIsNotReadIsToldByName) {
       {"STRAIGHT, 17, 18\n", "a.inp:43: *MPC, STRAIGHT of 2 nodes says nothing"},
   };
   for (const auto& [text, told] : cases) {
-    place.write("a.inp", bar(0) + "*MPC\n" + text);
-    imported("a.inp", "--scene-out s.toml");
+    imported_deck("a.inp", bar(0) + "*MPC\n" + text, "--scene-out s.toml");
     expect_said(told);
     EXPECT_TRUE(Scene::load(place / "s.toml").entries("joint").empty()) << text;
   }
-  place.write("a.inp", bar(0) + "*MASS, ELSET=p\n2.\n*ELEMENT, TYPE=MASS, ELSET=p\n50, 100\n*MPC\nBEAM, 17, 100\n");
-  imported("a.inp", "--scene-out s.toml");
+  imported_deck("a.inp", bar(0) + "*MASS, ELSET=p\n2.\n*ELEMENT, TYPE=MASS, ELSET=p\n50, 100\n*MPC\nBEAM, 17, 100\n", "--scene-out s.toml");
   expect_said("not read: *MPC, BEAM of a node that may turn, which Abaqus and CalculiX read differently (1,");
-  place.write("a.inp", bar(0) + "*MPC, USER\n1, 17, 18\n" + statics + bend + "*MPC\nBEAM, 17, 19\n" + end);
-  imported("a.inp", "--scene-out s.toml");
+  imported_deck("a.inp", bar(0) + "*MPC, USER\n1, 17, 18\n" + statics + bend + "*MPC\nBEAM, 17, 19\n" + end, "--scene-out s.toml");
   expect_said("not read: *MPC, USER (1,");
   expect_said("not read: *MPC in a step (1,");
   const std::pair<const char*, const char*> wrong[] = {
@@ -157,8 +152,7 @@ TEST_F(ImportInpMpc, WhatIsNotReadIsToldByName) {
       {"PLANE, 17, 18.5\n", "a.inp:43:12: no node set \"18.5\""},
   };
   for (const auto& [text, message] : wrong) {
-    place.write("a.inp", bar(0) + "*MPC\n" + text);
-    refused("a.inp -o b.h5 --scene-out t.toml", 2, message);
+    refused_deck("a.inp", bar(0) + "*MPC\n" + text, "-o b.h5 --scene-out t.toml", 2, message);
   }
 }
 

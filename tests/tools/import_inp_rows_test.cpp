@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // *EQUATION of equal displacements, *TRANSFORM, DCOUP3D, *RIGID BODY without a reference node, *PARAMETER; cells that the nodes on their
 // edges turn inside out; msh 1.  Truth: forces and extensions of a bar by hand.
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,8 +8,6 @@
 #include "import_case.hpp"
 #include "model/block.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_rows_test {
 namespace {
@@ -88,12 +85,12 @@ TEST_F(ImportInpRows, GravityOnAPartAndCentrifugalForcesPull) {
 
 // The same of a Nastran file: the top of a cube of 1 m rises as one, whichever grid is pulled.
 TEST_F(ImportInpRows, AnMpcOfEqualDisplacementsMovesGridsTogether) {
-  place.write("a.bdf",
-              "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nMPC = 5\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\n"
-              "GRID,4,,0.,1.,0.\nGRID,5,,0.,0.,1.\nGRID,6,,1.,0.,1.\nGRID,7,,1.,1.,1.\nGRID,8,,0.,1.,1.\nCHEXA,1,1,1,2,3,4,5,6\n,7,8\n"
-              "PSOLID,1,1\nMAT1,1,1.+9,,0.,1000.\nSPC1,1,123,1,2,3,4\nFORCE,2,7,,4.+3,0.,0.,1.\n"
-              "MPC,5,5,3,1.,7,3,-1.\nMPC,5,6,3,-3.,7,3,3.\nMPC,5,8,3,1.,5,3,-1.\nENDDATA\n");
-  imported("a.bdf", "--quiet --scene-out s.toml");
+  imported_deck("a.bdf",
+                "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nMPC = 5\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\n"
+                "GRID,4,,0.,1.,0.\nGRID,5,,0.,0.,1.\nGRID,6,,1.,0.,1.\nGRID,7,,1.,1.,1.\nGRID,8,,0.,1.,1.\nCHEXA,1,1,1,2,3,4,5,6\n,7,8\n"
+                "PSOLID,1,1\nMAT1,1,1.+9,,0.,1000.\nSPC1,1,123,1,2,3,4\nFORCE,2,7,,4.+3,0.,0.,1.\n"
+                "MPC,5,5,3,1.,7,3,-1.\nMPC,5,6,3,-3.,7,3,3.\nMPC,5,8,3,1.,5,3,-1.\nENDDATA\n",
+                "--quiet --scene-out s.toml");
   EXPECT_EQ(err, "");
   succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
   for (const int node : {5, 6, 7, 8}) EXPECT_NEAR(moved(node).z(), 4e-6, 1e-10) << node;
@@ -113,8 +110,7 @@ TEST_F(ImportInpRows, AnotherSubcaseMayBeTaken) {
     EXPECT_EQ(loads[0].vector3("force"), force) << option;
   }
   refused("a.bdf -o b.h5 --subcase 2", 1, "--subcase 2: there is none (subcases: 1, 4)");
-  place.write("a.inp", bar);
-  refused("a.inp -o b.h5 --subcase 2", 1, "--subcase is for a Nastran file, a.inp is none");
+  refused_deck("a.inp", bar, "-o b.h5 --subcase 2", 1, "--subcase is for a Nastran file, a.inp is none");
 }
 
 /// Rods of 1 m from the ground to nodes 1, 3, 5, 7, stiffness i * 1e8 N/m, pulled by 100, 200, -100, 400 N, and the displacements that are
@@ -169,8 +165,7 @@ TEST_F(ImportInpRows, AnMpcOfAnyFactorsHolds) {
             ",1," + k + ".-3\nSPC1,1,123," + b + "\nSPC1,1,23," + a + "\nFORCE,2," + a + ",," +
             std::to_string(pulls[static_cast<size_t>(i)]) + ",1.,0.,0.\n";
   }
-  place.write("a.bdf", text + "MPC,5,1,1,1.,3,1,2.,\n,,5,1,-3.,7,1,.5\nENDDATA\n");
-  imported("a.bdf", "--quiet --scene-out s.toml");
+  imported_deck("a.bdf", text + "MPC,5,1,1,1.,3,1,2.,\n,,5,1,-3.,7,1,.5\nENDDATA\n", "--quiet --scene-out s.toml");
   EXPECT_EQ(err, "");
   succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
   const auto u = rods_under({1, 2, -3, .5});
@@ -197,28 +192,28 @@ TEST_F(ImportInpRows, PyramidsAreTwoTetrahedraEach) {
       rest =
           "*NSET, NSET=all, ELSET=p\n*ELSET, ELSET=again\n7\n*MATERIAL, NAME=m\n*ELASTIC\n1e9, 0.\n*SOLID SECTION, "
           "ELSET=p, MATERIAL=m\n";
-  place.write("a.inp", points + rest);
-  const Mesh m = imported("a.inp");
+  const Mesh m = imported_deck("a.inp", points + rest);
   EXPECT_NEAR(test::volume(m), 1, 1e-12);
   EXPECT_EQ(test::cells_of(m, "p"), 2);
   EXPECT_EQ(m.node_sets.at("all").size(), 5U);
   EXPECT_EQ(m.cell_sets.at("again").size(), 2U);
   expect_said("1 pyramids are two tetrahedra each");
-  place.write("a.inp", points + "*SURFACE, NAME=s\np, S1\n" + rest);
-  refused("a.inp -o b.h5", 2, "a.inp:10: element 7 is a pyramid, whose faces by number are not read (a surface of element sets)");
-  place.write("a.bdf",
-              "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,.5,.5,3.\n"
-              "CPYRAM,7,1,1,2,3,4,5\nPSOLID,1,1\nMAT1,1,1.+9,,0.\nENDDATA\n");
-  EXPECT_NEAR(test::volume(imported("a.bdf")), 1, 1e-12);
+  refused_deck("a.inp", points + "*SURFACE, NAME=s\np, S1\n" + rest, "-o b.h5", 2,
+               "a.inp:10: element 7 is a pyramid, whose faces by number are not read (a surface of element sets)");
+  EXPECT_NEAR(
+      test::volume(imported_deck("a.bdf",
+                                 "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,.5,.5,3.\n"
+                                 "CPYRAM,7,1,1,2,3,4,5\nPSOLID,1,1\nMAT1,1,1.+9,,0.\nENDDATA\n")),
+      1, 1e-12);
 }
 
 // Truth: as of CENTRIF above: 2 rho A omega^2, omega of RFORCE in turns per second.
 TEST_F(ImportInpRows, RforceTurnsTheWhole) {
-  place.write("a.bdf",
-              "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,0.,1.,0.\nGRID,3,,0.,1.,1.\nGRID,4,,0.,0.,1.\n"
-              "GRID,5,,2.,0.,0.\nGRID,6,,2.,1.,0.\nGRID,7,,2.,1.,1.\nGRID,8,,2.,0.,1.\nGRID,9,,0.,.5,0.\nCHEXA,1,1,1,2,3,4,5,6\n,7,8\n"
-              "PSOLID,1,1\nMAT1,1,1.+9,,0.,1000.\nSPC1,1,123,1,2,3,4\nRFORCE,2,9,,.25,0.,0.,2.\nENDDATA\n");
-  imported("a.bdf", "--scene-out s.toml");
+  imported_deck("a.bdf",
+                "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,0.,1.,0.\nGRID,3,,0.,1.,1.\nGRID,4,,0.,0.,1.\n"
+                "GRID,5,,2.,0.,0.\nGRID,6,,2.,1.,0.\nGRID,7,,2.,1.,1.\nGRID,8,,2.,0.,1.\nGRID,9,,0.,.5,0.\nCHEXA,1,1,1,2,3,4,5,6\n,7,8\n"
+                "PSOLID,1,1\nMAT1,1,1.+9,,0.,1000.\nSPC1,1,123,1,2,3,4\nRFORCE,2,9,,.25,0.,0.,2.\nENDDATA\n",
+                "--scene-out s.toml");
   EXPECT_EQ(err.find("not read"), std::string::npos) << err;
   succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
   const double omega = 2 * std::acos(-1) * .5;
@@ -233,8 +228,7 @@ TEST_F(ImportInpRows, RforceTurnsTheWhole) {
 
 TEST_F(ImportInpRows, OtherEquationsAreTold) {
   for (const char* equation : {"2\n9, 4, 1., 10, 4, -1.", "3\n9, 1, 1., 10, 11, -1., 11, 1, 1."}) {
-    place.write("a.inp", bar + held + "*EQUATION\n" + equation + "\n" + statics + end);
-    imported("a.inp", "--scene-out s.toml");
+    imported_deck("a.inp", bar + held + "*EQUATION\n" + equation + "\n" + statics + end, "--scene-out s.toml");
     EXPECT_NE(err.find("not read: *EQUATION "), std::string::npos) << equation << err;
   }
 }
@@ -259,9 +253,10 @@ TEST_F(ImportInpRows, SupportsAndForcesInAxesOfATransform) {
 
 // Truth: radial forces on the ends of a cross cancel; the axes of a cylinder at each node.
 TEST_F(ImportInpRows, AxesOfACylinderAreThoseAtEachNode) {
-  place.write("a.inp", bar + held + "*TRANSFORM, NSET=head, TYPE=C\n0., .5, .5, 1., .5, .5\n" + statics +
-                           "*CLOAD\nhead, 1, 3.\nhead, 3, 1.\n" + end);
-  const Mesh m = imported("a.inp", "--scene-out s.toml");
+  const Mesh m = imported_deck(
+      "a.inp",
+      bar + held + "*TRANSFORM, NSET=head, TYPE=C\n0., .5, .5, 1., .5, .5\n" + statics + "*CLOAD\nhead, 1, 3.\nhead, 3, 1.\n" + end,
+      "--scene-out s.toml");
   EXPECT_EQ(err.find("not read"), std::string::npos) << err;
   Vec3 sum = Vec3::Zero();
   double outward = 0;
@@ -281,8 +276,7 @@ TEST_F(ImportInpRows, ADistributingCouplingElementSharesItsForce) {
   solve(bar + element + "*DISTRIBUTING COUPLING, ELSET=dc\nhead, 1.\n" + held + statics + "*CLOAD\n100, 1, 4e3\n" + end);
   EXPECT_NEAR(foot().x(), -4e3, 1e-4);
   for (const int node : {9, 10, 11, 12}) EXPECT_NEAR(moved(node).x(), 8e-6, 1e-10) << node;
-  place.write("a.inp", bar + element + held + statics + end);
-  imported("a.inp");
+  imported_deck("a.inp", bar + element + held + statics + end);
   expect_said("*ELEMENT, TYPE=DCOUP3D without a value");
 }
 
@@ -296,8 +290,8 @@ TEST_F(ImportInpRows, ARigidBodyNeedsNoReferenceNode) {
 TEST_F(ImportInpRows, ParametersStandForNumbers) {
   const std::string values =
       "*PARAMETER\n# of the bar\nlong = 2.\nF = -(1 + 2)**2*1e2/long + 2**-1 # 449.5 below zero\nn=3*3\nangle = sin(radians(30))\n";
-  place.write("a.inp", values + bar + held + statics + "*CLOAD\n<n>, 1, <F>\n10, 2, < angle >\n" + end);
-  const Mesh m = imported("a.inp", "--scene-out s.toml");
+  const Mesh m =
+      imported_deck("a.inp", values + bar + held + statics + "*CLOAD\n<n>, 1, <F>\n10, 2, < angle >\n" + end, "--scene-out s.toml");
   std::map<std::int64_t, Vec3> force;
   const Scene scene = Scene::load(place / "s.toml");
   for (const Entry& load : scene.entries("load"))
@@ -309,13 +303,10 @@ TEST_F(ImportInpRows, ParametersStandForNumbers) {
        {std::pair{"a = 1/2", "a.inp:2: *PARAMETER: a division of whole numbers with a rest in \" 1/2\" (write the numbers out)"},
         {"a = b + 1", "a.inp:2: *PARAMETER: no parameter \"b\" so far in \" b + 1\" (write the numbers out)"},
         {"a = 'x'", "a.inp:2: *PARAMETER: a number is missing in \" 'x'\" (write the numbers out)"}}) {
-    place.write("a.inp", std::string("*PARAMETER\n") + line + "\n" + bar);
-    refused("a.inp -o b.h5", 2, message);
+    refused_deck("a.inp", std::string("*PARAMETER\n") + line + "\n" + bar, "-o b.h5", 2, message);
   }
   place.write("a.inp", "*PARAMETER\na = 1\n" + bar + held + statics + "*CLOAD\n9, 1, <A>\n" + end);
-  const auto ran = place.run("hilo-import a.inp -o b.h5");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("no parameter \"A\" so far (*PARAMETER gives it before)"), std::string::npos) << ran.err;
+  expect_end(place.run("hilo-import a.inp -o b.h5"), 2, "no parameter \"A\" so far (*PARAMETER gives it before)");
 }
 
 // Truth: a cube of 1 m; one node on an edge stands so far inside that a corner is inside out.
@@ -329,8 +320,7 @@ TEST_F(ImportInpRows, NodesOnEdgesThatTurnACellInsideOutAreStraightened) {
   }
   text += "*ELEMENT, TYPE=C3D20, ELSET=all\n1";
   for (int a = 0; a < 20; ++a) text += (a == 12 ? ",\n" : ", ") + std::to_string(a + 1);
-  place.write("a.inp", text + "\n");
-  const Mesh m = imported("a.inp");
+  const Mesh m = imported_deck("a.inp", text + "\n");
   const Vec3 size = Vec3(reference[6][0], reference[6][1], reference[6][2]) - Vec3(reference[0][0], reference[0][1], reference[0][2]);
   EXPECT_NEAR(volume(m), size.prod(), 1e-12);
   expect_said("1 cells that the nodes on their edges turned inside out have straight edges");
@@ -379,17 +369,17 @@ TEST_F(ImportInpRows, InstancesOfPartsHaveNumbersAndNamesOfTheirOwn) {
 }
 
 TEST_F(ImportInpRows, Msh1IsRead) {
-  place.write("a.msh",
-              "$NOD\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$ENDNOD\n$ELM\n3\n1 4 7 1 4 1 2 3 4\n2 4 8 2 4 2 3 4 5\n"
-              "3 2 9 3 3 1 3 2\n$ENDELM\n");
-  const Mesh m = imported("a.msh");
+  const Mesh m =
+      imported_deck("a.msh",
+                    "$NOD\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$ENDNOD\n$ELM\n3\n1 4 7 1 4 1 2 3 4\n2 4 8 2 4 2 3 4 5\n"
+                    "3 2 9 3 3 1 3 2\n$ENDELM\n");
   EXPECT_EQ(cells_of(m, "volume_7"), 1);
   EXPECT_EQ(cells_of(m, "volume_8"), 1);
   EXPECT_NEAR(volume(m), 1. / 6 + 1. / 3, 1e-14);
   ASSERT_TRUE(m.facet_sets.contains("surface_9"));
   EXPECT_LT((vector_area(m, m.facet_sets.at("surface_9")) - Vec3(0, 0, -.5)).norm(), 1e-14);
-  place.write("a.msh", "$NOD\n1\n1 0 0 0\n$ENDNOD\n$ELM\n1\n1 4 7 1 3 1 2 3\n$ENDELM\n");
-  refused("a.msh -o b.h5", 2, "a.msh:7: a Tetrahedron 4 of 3 nodes");
+  refused_deck("a.msh", "$NOD\n1\n1 0 0 0\n$ENDNOD\n$ELM\n1\n1 4 7 1 3 1 2 3\n$ENDELM\n", "-o b.h5", 2,
+               "a.msh:7: a Tetrahedron 4 of 3 nodes");
 }
 
 }  // namespace

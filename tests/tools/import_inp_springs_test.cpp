@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "import_case.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_springs_test {
 namespace {
@@ -110,12 +108,12 @@ TEST_F(ImportInpSprings, DecksOfSpringsAndMassesAloneAreScenesOfBodies) {
 }
 
 TEST_F(ImportInpSprings, WhatNoSceneSaysIsNamed) {
-  place.write("a.inp",
-              cube(1) +
-                  "*ELEMENT, TYPE=SPRING2, ELSET=a\n50, 11, 12\n*SPRING, ELSET=a\n1, 2\n1e3\n*ELEMENT, TYPE=SPRING1, ELSET=b\n51, 11\n"
-                  "*SPRING, ELSET=b, NONLINEAR\n4\n0., 0.\n1., 1.\n*ELEMENT, TYPE=DASHPOTA, ELSET=c\n52, 1, 2\n"
-                  "*DASHPOT, ELSET=c, NONLINEAR\n\n0., 0.\n1., 1.\n*ELEMENT, TYPE=DASHPOT1, ELSET=d\n53, 11\n*DASHPOT, ELSET=d\n");
-  imported("a.inp", "--scene-out s.toml");
+  imported_deck("a.inp",
+                cube(1) +
+                    "*ELEMENT, TYPE=SPRING2, ELSET=a\n50, 11, 12\n*SPRING, ELSET=a\n1, 2\n1e3\n*ELEMENT, TYPE=SPRING1, ELSET=b\n51, 11\n"
+                    "*SPRING, ELSET=b, NONLINEAR\n4\n0., 0.\n1., 1.\n*ELEMENT, TYPE=DASHPOTA, ELSET=c\n52, 1, 2\n"
+                    "*DASHPOT, ELSET=c, NONLINEAR\n\n0., 0.\n1., 1.\n*ELEMENT, TYPE=DASHPOT1, ELSET=d\n53, 11\n*DASHPOT, ELSET=d\n",
+                "--scene-out s.toml");
   for (const char* what :
        {"*SPRING of SPRING2, but along one component of both nodes", "*SPRING, NONLINEAR, of SPRING1, but along a component",
         "*DASHPOT, NONLINEAR, of DASHPOTA between two nodes that do not turn", "*ELEMENT, TYPE=DASHPOT1 without a value"})
@@ -128,8 +126,7 @@ TEST_F(ImportInpSprings, WhatNoSceneSaysIsNamed) {
       {"*SPRING, ELSET=b, NONLINEAR\n1\n5., x\n", "a.inp:37:5: expected a number, found \"x\""},
   };
   for (const auto& [text, message] : cases) {
-    place.write("a.inp", cube(1) + "*ELEMENT, TYPE=SPRING1, ELSET=b\n51, 11\n" + text);
-    refused("a.inp -o a.h5", 2, message);
+    refused_deck("a.inp", cube(1) + "*ELEMENT, TYPE=SPRING1, ELSET=b\n51, 11\n" + text, "-o a.h5", 2, message);
   }
 }
 
@@ -170,8 +167,7 @@ TEST_F(ImportInpSprings, BaseMotionsThatNoSceneSaysAreNamed) {
       {"*FREQUENCY\n3\n*END STEP\n*STEP\n*MODAL DYNAMIC\n.1, 9.\n*BASE MOTION, DOF=1, AMPLITUDE=q\n", "*BASE MOTION in step 2 and later"},
   };
   for (const auto& [step, what] : cases) {
-    place.write("a.inp", cube(1) + amplitude + "*STEP\n" + step + "*END STEP\n");
-    imported("a.inp", "--scene-out s.toml");
+    imported_deck("a.inp", cube(1) + amplitude + "*STEP\n" + step + "*END STEP\n", "--scene-out s.toml");
     expect_said(std::string("not read: ") + what + " (1,");
     EXPECT_NE(test::text_of(place / "s.toml").find(fmt::format("card = \"{}\"", what)), std::string::npos) << what;
   }
@@ -180,8 +176,7 @@ TEST_F(ImportInpSprings, BaseMotionsThatNoSceneSaysAreNamed) {
                                       {"*BASE MOTION, DOF=1, AMPLITUDE=q, SCALE=x\n", "a.inp:38:41: expected a number, found \"x\""},
                                       {"*BASE MOTION, DOF=1, AMPLITUDE=q, TYPE=JERK\n",
                                        "a.inp:38:40: *BASE MOTION, TYPE=JERK (DISPLACEMENT, VELOCITY or ACCELERATION)"}}) {
-    place.write("a.inp", cube(1) + amplitude + "*STEP\n*DYNAMIC\n.1, 9.\n" + card + "*END STEP\n");
-    refused("a.inp -o a.h5", 2, message);
+    refused_deck("a.inp", cube(1) + amplitude + "*STEP\n*DYNAMIC\n.1, 9.\n" + card + "*END STEP\n", "-o a.h5", 2, message);
   }
 }
 

@@ -6,8 +6,6 @@
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_steps_test {
 namespace {
@@ -133,8 +131,7 @@ TEST_F(ImportInpSteps, WhatOneRunCannotSayIsToldAndTheStepsBeforeItStay) {
        "*CLOAD in step 2 and later", 1},
   };
   for (const auto& c : cases) {
-    place.write("a.inp", bar + c.text);
-    imported("a.inp", "--scene-out s.toml");
+    imported_deck("a.inp", bar + c.text, "--scene-out s.toml");
     EXPECT_NE(err.find(c.why), std::string::npos) << c.text << err;
     EXPECT_NE(err.find("not read: " + c.card), std::string::npos) << c.text << err;
     const Scene scene = Scene::load(place / "s.toml");

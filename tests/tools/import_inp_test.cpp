@@ -7,7 +7,6 @@
 #include "import_case.hpp"
 #include "model/block.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
 
 namespace hilo::test::import_inp_test {
 namespace {
@@ -193,20 +192,18 @@ TEST_F(ImportInp, OrderTwoSharesNodesCompletesSetsAndLeavesNodalForcesAlone) {
 }
 
 TEST_F(ImportInp, CellsWithoutSectionAreARegionAndThatIsSaid) {
-  place.write("a.inp", two_cubes);
-  EXPECT_EQ(imported("a.inp").region_name, std::vector<std::string>{"rest"});
+  EXPECT_EQ(imported_deck("a.inp", two_cubes).region_name, std::vector<std::string>{"rest"});
   expect_said(
       "2 of 2 cells are in no region, the first is cell 1: they are region \"rest\"; --rest gives it another name, --regions "
       "makes regions of element sets: low, high\n");
   refused("a.inp -o a.h5 --regions lov", 2, "a.inp: --regions: no element set \"lov\" (did you mean \"low\"?)");
   EXPECT_EQ(imported("a.inp", "--regions low").region_name, (std::vector<std::string>{"low", "rest"}));
   // a region of that name is another one
-  place.write("b.inp", two_cubes + "*ELSET, ELSET=rest\n1\n*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*SOLID SECTION, ELSET=rest, MATERIAL=m\n");
-  const Mesh two = imported("b.inp");
+  const Mesh two = imported_deck(
+      "b.inp", two_cubes + "*ELSET, ELSET=rest\n1\n*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*SOLID SECTION, ELSET=rest, MATERIAL=m\n");
   EXPECT_EQ(two.region_name, (std::vector<std::string>{"rest", "rest_cells"}));
   EXPECT_TRUE(std::isnan(two.region_data[1].E));
-  place.write("a.inp", two_cubes);
-  EXPECT_EQ(imported("a.inp", "--regions low,high").region_name, (std::vector<std::string>{"low", "high"}));
+  EXPECT_EQ(imported_deck("a.inp", two_cubes, "--regions low,high").region_name, (std::vector<std::string>{"low", "high"}));
   const Mesh m = imported("a.inp", "--regions low --rest others");
   EXPECT_EQ(m.region_name, (std::vector<std::string>{"low", "others"}));
   EXPECT_TRUE(m.cell_sets.count("high"));
@@ -214,10 +211,10 @@ TEST_F(ImportInp, CellsWithoutSectionAreARegionAndThatIsSaid) {
 }
 
 TEST_F(ImportInp, ALaterSectionTakesTheCellsAndTheWholeSetIsKept) {
-  place.write("a.inp", two_cubes +
-                           "*ELSET, ELSET=all\nlow, high\n*MATERIAL, NAME=m\n*ELASTIC\n1, 0\n*MATERIAL, NAME=n\n*ELASTIC\n2, 0\n"
-                           "*SOLID SECTION, ELSET=all, MATERIAL=m\n*SOLID SECTION, ELSET=high, MATERIAL=n\n");
-  const Mesh m = imported("a.inp");
+  const Mesh m =
+      imported_deck("a.inp", two_cubes +
+                                 "*ELSET, ELSET=all\nlow, high\n*MATERIAL, NAME=m\n*ELASTIC\n1, 0\n*MATERIAL, NAME=n\n*ELASTIC\n2, 0\n"
+                                 "*SOLID SECTION, ELSET=all, MATERIAL=m\n*SOLID SECTION, ELSET=high, MATERIAL=n\n");
   EXPECT_EQ(m.region_name, (std::vector<std::string>{"all", "high"}));
   EXPECT_EQ(m.region, (std::vector<std::int32_t>{0, 1}));
   EXPECT_EQ(m.region_data[1].E, 2);
@@ -229,17 +226,17 @@ TEST_F(ImportInp, ALaterSectionTakesTheCellsAndTheWholeSetIsKept) {
 }
 
 TEST_F(ImportInp, OneNameForTwoKindsOfSetIsToldApart) {
-  place.write("a.inp", two_cubes + "*NSET, NSET=high\n9, 10\n*SURFACE, NAME=low\nlow, S1\n*NSET, NSET=low\n1, 2, 3, 4, 5, 6, 7, 8\n");
-  const Mesh m = imported("a.inp", "--regions low,high");
+  const Mesh m =
+      imported_deck("a.inp", two_cubes + "*NSET, NSET=high\n9, 10\n*SURFACE, NAME=low\nlow, S1\n*NSET, NSET=low\n1, 2, 3, 4, 5, 6, 7, 8\n",
+                    "--regions low,high");
   EXPECT_EQ(m.node_sets.at("high_nodes").size(), 2u);
   EXPECT_EQ(m.facet_sets.at("low_facets").size(), 1u);
   EXPECT_EQ(m.node_sets.size(), 1u) << "the node set low is the nodes of region low";
 }
 
 TEST_F(ImportInp, ASectionWithoutAMaterialIsARegionWithoutOne) {
-  place.write("a.inp",
-              two_cubes + "*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*SOLID SECTION, ELSET=low\n*SOLID SECTION, ELSET=high, MATERIAL=m\n");
-  const Mesh m = imported("a.inp");
+  const Mesh m = imported_deck(
+      "a.inp", two_cubes + "*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*SOLID SECTION, ELSET=low\n*SOLID SECTION, ELSET=high, MATERIAL=m\n");
   EXPECT_EQ(m.region_name, (std::vector<std::string>{"low", "high"}));
   EXPECT_TRUE(std::isnan(m.region_data[0].E));
   EXPECT_EQ(m.region_data[1].E, 1);
@@ -247,11 +244,10 @@ TEST_F(ImportInp, ASectionWithoutAMaterialIsARegionWithoutOne) {
 }
 
 TEST_F(ImportInp, ExpansionAndTemperaturesAreToldAsLeftOut) {
-  place.write("a.inp", two_cubes +
-                           "*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*EXPANSION\n1.2e-5\n*ELSET, ELSET=all\nlow, high\n"
-                           "*SOLID SECTION, ELSET=all, MATERIAL=m\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\n1, 20.\n*STEP\n*STATIC\n"
-                           "*TEMPERATURE\n1, 30.\n*END STEP\n");
-  imported("a.inp");
+  imported_deck("a.inp", two_cubes +
+                             "*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*EXPANSION\n1.2e-5\n*ELSET, ELSET=all\nlow, high\n"
+                             "*SOLID SECTION, ELSET=all, MATERIAL=m\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\n1, 20.\n*STEP\n*STATIC\n"
+                             "*TEMPERATURE\n1, 30.\n*END STEP\n");
   for (const char* what : {"*EXPANSION (1, ", "*INITIAL CONDITIONS, TYPE=TEMPERATURE (1, ", "*TEMPERATURE (1, "})
     expect_said(std::string("not read: ") + what);
 }
@@ -267,8 +263,7 @@ TEST_F(ImportInp, SetsOfPartAndAssemblyAreToldApartByTheirQualifiedNames) {
   const std::string step =
       "*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*STEP\n*STATIC\n*BOUNDARY\nBlock-1.s, 1, 3\na.s, 1\nBlock-1.3, 2\n*CLOAD\n"
       "s, 3, 1.\npoint, 3, 1.\n*DSLOAD\nf, P, 2.\nBlock-1.f, P, 3.\n*END STEP\n";
-  place.write("a.inp", part + assembly + step);
-  const Mesh m = imported("a.inp", "--scene-out s.toml");
+  const Mesh m = imported_deck("a.inp", part + assembly + step, "--scene-out s.toml");
   const auto ids = [&](const std::string& set) {
     std::vector<std::int64_t> v;
     for (const auto a : m.nodes_of(set, set)) v.push_back(m.node_id[a]);
@@ -294,10 +289,10 @@ TEST_F(ImportInp, SetsOfPartAndAssemblyAreToldApartByTheirQualifiedNames) {
 }
 
 TEST_F(ImportInp, TrussesAreBars) {
-  place.write("a.inp",
-              "*NODE\n1,0,0,0\n2,3,4,0\n*ELEMENT,TYPE=T3D2,ELSET=rope\n1,1,2\n*MATERIAL,NAME=m\n*ELASTIC\n1e9,0\n*SOLID "
-              "SECTION,ELSET=rope,MATERIAL=m\n2.5e-4\n");
-  const Mesh m = imported("a.inp", "--scene-out s.toml");
+  const Mesh m = imported_deck("a.inp",
+                               "*NODE\n1,0,0,0\n2,3,4,0\n*ELEMENT,TYPE=T3D2,ELSET=rope\n1,1,2\n*MATERIAL,NAME=m\n*ELASTIC\n1e9,0\n*SOLID "
+                               "SECTION,ELSET=rope,MATERIAL=m\n2.5e-4\n",
+                               "--scene-out s.toml");
   EXPECT_EQ(static_cast<Shape>(m.shape[0]), Shape::bar2);
   EXPECT_DOUBLE_EQ(quality(m, 0).volume, 5);
   EXPECT_DOUBLE_EQ(Scene::load(place / "s.toml").entries("region")[0].number("area"), 2.5e-4);
@@ -307,8 +302,7 @@ TEST_F(ImportInp, NodesNearerThanTheToleranceBecomeOne) {
   std::string apart = two_cubes;
   apart.replace(apart.find("2, 5, 6, 7, 8, 9"), 16, "2, 25, 26, 27, 28, 9");
   apart.insert(apart.find("*ELEMENT"), "25, 0, 1e-7, 1\n26, 1, 0, 1.0000001\n27, 1, 1, 1\n28, 0, 1, 1\n");
-  place.write("a.inp", apart);
-  EXPECT_EQ(imported("a.inp", "--rest all").n_nodes(), 16);
+  EXPECT_EQ(imported_deck("a.inp", apart, "--rest all").n_nodes(), 16);
   EXPECT_EQ(imported("a.inp", "--rest all --merge-nodes 1e-6").n_nodes(), 12);
   EXPECT_EQ(imported("a.inp", "--rest all --merge-nodes 1e-8").n_nodes(), 14);
   refused("a.inp -o b.h5 --rest all --merge-nodes 1.001", 2,
@@ -353,21 +347,18 @@ TEST_F(ImportInp, WrongDecksAreNamedByLineAndColumnAndLeaveNothing) {
       {"*INCLUDE, INPUT=a.inp\n", "a.inp:1: *INCLUDE nested more than 20 deep at \"a.inp\" (does a file include itself?)"},
   };
   for (const auto& c : cases) {
-    place.write("a.inp", c.text);
-    refused("a.inp -o a.h5 --rest all", 2, c.message);
+    refused_deck("a.inp", c.text, "-o a.h5 --rest all", 2, c.message);
   }
 }
 
 TEST_F(ImportInp, InvertedCellsAreNamed) {
   std::string mirrored = two_cubes;
   mirrored.replace(mirrored.find("1, 1, 2, 3, 4, 5, 6, 7, 8"), 25, "1, 5, 6, 7, 8, 1, 2, 3, 4");
-  place.write("a.inp", mirrored);
-  refused("a.inp -o a.h5 --rest all", 2,
-          "a.inp: 1 of 2 cells are inverted (scaled Jacobian <= 0 at a corner): 1 (repair or remesh them; --flip turns "
-          "cells that are numbered as in a mirror)");
+  refused_deck("a.inp", mirrored, "-o a.h5 --rest all", 2,
+               "a.inp: 1 of 2 cells are inverted (scaled Jacobian <= 0 at a corner): 1 (repair or remesh them; --flip turns "
+               "cells that are numbered as in a mirror)");
   mirrored.replace(mirrored.find("2, 5, 6, 7, 8, 9, 10, 11, 12"), 28, "2, 9, 10, 11, 12, 5, 6, 7, 8");
-  place.write("a.inp", mirrored);
-  EXPECT_NEAR(test::volume(imported("a.inp", "--rest all")), 2, 1e-12);  // the deck's way of numbering
+  EXPECT_NEAR(test::volume(imported_deck("a.inp", mirrored, "--rest all")), 2, 1e-12);  // the deck's way of numbering
   expect_said("2 of 2 cells were numbered as in a mirror: turned");
 }
 

@@ -7,8 +7,6 @@
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
-#include "model/store.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_ties_test {
 namespace {
@@ -86,8 +84,8 @@ TEST_F(ImportInpTies, SpringsBetweenOneComponentOfTwoNodesToo) {
     const auto u = Store::open(place / "run.h5").read<double>("/history/body/node_" + node);
     EXPECT_NEAR(u[u.size() - 12] - u[0], 400 / 1e6 + 1.6e-6, 1e-9) << node;
   }
-  place.write("a.inp", bar + coupling + "*ELEMENT, TYPE=SPRING2, ELSET=s\n50, 101, 102\n*SPRING, ELSET=s\n2, 3\n1e6\n");
-  imported("a.inp", "--scene-out s.toml");
+  imported_deck("a.inp", bar + coupling + "*ELEMENT, TYPE=SPRING2, ELSET=s\n50, 101, 102\n*SPRING, ELSET=s\n2, 3\n1e6\n",
+                "--scene-out s.toml");
   expect_said("not read: *SPRING of SPRING2, but along one component of both nodes");
 }
 

@@ -14,8 +14,7 @@ using ImportRegistry = Import;
 TEST_F(ImportRegistry, AnUnknownEndingIsToldAllThatAreKnown) {
   place.write("cube.xyz", "1");
   const auto ran = place.run("hilo-import cube.xyz -o out.h5");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("no reader for \".xyz\" files"), std::string::npos) << ran.err;
+  expect_end(ran, 2, "no reader for \".xyz\" files");
   for (const auto& f : mesh_formats())
     EXPECT_NE(ran.err.find(std::string(" ") + std::string(f.name)), std::string::npos) << f.name << ran.err;
 }

@@ -43,10 +43,10 @@ TEST_F(ImportVtk, DamagedFilesAreNamedAndLeaveNothing) {
 
 // Truth: volumes by hand.  Two pyramids on one square, and one on a face of a cube; each in two halves that fit.
 TEST_F(ImportVtk, PyramidsAreTwoTetrahedraEach) {
-  place.write("a.vtk",
-              "# vtk DataFile Version 3.0\npyramids\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 float\n1 0 0 1 1 0 0 1 0 0 0 0 .5 .5 "
-              "1 .5 .5 -2\nCELLS 2 12\n5 0 1 2 3 4\n5 1 0 3 2 5\nCELL_TYPES 2\n14\n14\n");
-  const Mesh m = imported("a.vtk");
+  const Mesh m =
+      imported_deck("a.vtk",
+                    "# vtk DataFile Version 3.0\npyramids\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 float\n1 0 0 1 1 0 0 1 0 0 0 0 .5 .5 "
+                    "1 .5 .5 -2\nCELLS 2 12\n5 0 1 2 3 4\n5 1 0 3 2 5\nCELL_TYPES 2\n14\n14\n");
   EXPECT_NEAR(volume(m), 1. / 3 + 2. / 3, 1e-7);
   EXPECT_EQ(m.n_cells(), 4);
   std::vector<std::int64_t> all{0, 1, 2, 3};
@@ -61,10 +61,12 @@ TEST_F(ImportVtk, PyramidsAreTwoTetrahedraEach) {
 }
 
 TEST_F(ImportVtk, CellsWithoutARegionArrayAreARegionAndThatIsSaid) {
-  place.write("a.vtk",
-              "# vtk DataFile Version 3.0\none tetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 "
-              "1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
-  EXPECT_EQ(imported("a.vtk").region_name, std::vector<std::string>{"rest"});
+  EXPECT_EQ(
+      imported_deck("a.vtk",
+                    "# vtk DataFile Version 3.0\none tetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 "
+                    "1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n")
+          .region_name,
+      std::vector<std::string>{"rest"});
   expect_said("1 of 1 cells are in no region, the first is cell 0: they are region \"rest\"; --rest gives it another name\n");
   EXPECT_NEAR(volume(imported("a.vtk", "--rest all")), 1. / 6, 1e-7);
   place.write("b.vtk",
@@ -73,10 +75,11 @@ TEST_F(ImportVtk, CellsWithoutARegionArrayAreARegionAndThatIsSaid) {
   refused(
       "b.vtk -o a.h5", 2,
       "b.vtk: cell 0 is of VTK type 42 (supported: lines, tetrahedra, hexahedra, voxels, wedges of order 1 and 2, pyramids of 5 nodes)");
-  place.write("c.vtk",
-              "# vtk DataFile Version 3.0\nbad node\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 1 1 0\nCELLS 1 5\n4 0 1 "
-              "2 3\nCELL_TYPES 1\n10\n");
-  refused("c.vtk -o a.h5", 2, "c.vtk: cell 0 names node 3, which does not exist");
+  refused_deck(
+      "c.vtk",
+      "# vtk DataFile Version 3.0\nbad node\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 1 1 0\nCELLS 1 5\n4 0 1 "
+      "2 3\nCELL_TYPES 1\n10\n",
+      "-o a.h5", 2, "c.vtk: cell 0 names node 3, which does not exist");
   place.write(
       "d.vtk",
       "# vtk DataFile Version 3.0\nnode 2.7\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 "

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Folds at which regions of several fidelities meet, and nodes of linear regions of shells that beams, hinges, moments and joints act on:
 // beside beam theory, and beside the same scene with all of it nonlinear.
-#include <fmt/format.h>
-
 #include "fold_frames.hpp"
-#include "succeeded.hpp"
 
 namespace hilo::test::mixed_folds_test {
 namespace {
@@ -108,8 +105,7 @@ std::string of_rubber(double E) {
 
 // Vibrations between interfaces stop at 40 modes: 1e-5 of the frequencies here.
 TEST_F(MixedFolds, VibrateAsNonlinearOnes) {
-  place.write("tee.geo", tee(3, 3));
-  imported("tee.geo", "--thickness 0.05");
+  imported_deck("tee.geo", tee(3, 3), "--thickness 0.05");
   const auto all = frequencies(of_rubber(2e7), "--rest nonlinear");
   for (const char* mix : {"--linear left", "--linear up --linear left"}) {
     const auto mixed = frequencies(of_rubber(2e7), mix);
@@ -120,20 +116,16 @@ TEST_F(MixedFolds, VibrateAsNonlinearOnes) {
 
 // Of 37 nodes of the fold, which turn alike and not as they each like: stiffer, and by little.
 TEST_F(MixedFolds, OfManyNodesMoveByPolynomials) {
-  place.write("tee.geo", tee(36, 2));
-  imported("tee.geo", "--thickness 0.05");
+  imported_deck("tee.geo", tee(36, 2), "--thickness 0.05");
   const auto all = frequencies(of_rubber(2e7), "--rest nonlinear"), mixed = frequencies(of_rubber(2e7), "--linear up");
-  EXPECT_NE(said.find("up: linear, it meets other shells at 37 nodes of folds: they move together by polynomials of the fifth degree"),
-            std::string::npos)
-      << said;
+  expect_words(said, "up: linear, it meets other shells at 37 nodes of folds: they move together by polynomials of the fifth degree");
   ASSERT_EQ(mixed.size(), all.size());
   for (size_t k = 0; k < all.size(); ++k) EXPECT_NEAR(mixed[k] / all[k], 1 + 5e-4, 6e-4) << k;
 }
 
 // More than half a turn: what the fold carries turns with the mean axes of the linear plates.
 TEST_F(MixedFolds, KeepEnergyAndMomentaAtAnyTurn) {
-  place.write("tee.geo", tee(3, 3));
-  imported("tee.geo", "--thickness 0.05");
+  imported_deck("tee.geo", tee(3, 3), "--thickness 0.05");
   const auto scene = [](double E, const char* way, double end) {
     return of_rubber(E) + fmt::format("[[initial]]\non = [\"up\"]\nvelocity = [{}]\nspin = [3, 2, 5]\nabout = [0, 0, 0]\n", way) +
            "[[initial]]\non = [\"left\", \"right\"]\nvelocity = [0, 1, 0]\nspin = [3, 2, 5]\nabout = [0, 0, 0]\n"
@@ -189,8 +181,7 @@ std::string angle() {
 // An arm on a joint, pulled by a spring.  All modes up to 1e5 Hz, so that the shock of the start has its answer: 0.2 % of the way of the
 // joint after 0.015 s.
 TEST_F(MixedFolds, JointsOfEveryKindActOnNodesOfLinearShells) {
-  place.write("angle.inp", angle());
-  imported("angle.inp", "--thicken --scene-out angle.toml");
+  imported_deck("angle.inp", angle(), "--thicken --scene-out angle.toml");
   std::string scene = test::text_of(place / "angle.toml");
   scene.erase(scene.find("[time]"));
   for (size_t at = 0; (at = scene.find("material = \"M\"\n", at)) != scene.npos;) scene.insert(at += 15, "modes = 60\nup_to = 1e5\n");

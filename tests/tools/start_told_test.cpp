@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a start from equilibrium says on stderr.
-#include <gtest/gtest.h>
-
-#include "../cli.hpp"
 #include "scene_parts.hpp"
 #include "succeeded.hpp"
 

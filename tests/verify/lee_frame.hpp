@@ -9,13 +9,13 @@ namespace hilo::test {
 
 inline Mesh lee_frame() {
   constexpr double leg = 1.2, half = 0.01;
-  BlockOptions o;
-  o.n[0] = 80, o.low = Vec3(0, -half, 0), o.high = Vec3(2 * leg, half, 0.03);
-  o.map = [](const Vec3& at) {  // a straight bar of 2.4 m folded to a frame, with a mitre at the corner
-    const double s = at[0], n = at[1], along = leg - n, z = 0.03 - at[2];
-    return s <= leg ? Vec3(n, s / leg * along, z) : Vec3(n + (s - leg) / leg * along, along, z);
-  };
-  Mesh mesh = block_mesh(o);
+  Mesh mesh = block_mesh({.n = {80, 1, 1},
+                          .low = Vec3(0, -half, 0),
+                          .high = Vec3(2 * leg, half, 0.03),
+                          .map = [](const Vec3& at) {  // a straight bar of 2.4 m folded to a frame, with a mitre at the corner
+                            const double s = at[0], n = at[1], along = leg - n, z = 0.03 - at[2];
+                            return s <= leg ? Vec3(n, s / leg * along, z) : Vec3(n + (s - leg) / leg * along, along, z);
+                          }});
   add_node_set(mesh, "load", [](const Vec3& x) { return std::abs(x[0] - 0.232) < 0.01 && x[1] > leg + half / 2; });
   EXPECT_EQ(mesh.node_sets.at("load").size(), 2u);
   return mesh;

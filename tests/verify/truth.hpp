@@ -4,7 +4,6 @@
 #include <sstream>
 #include <string>
 
-#include "cli.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {

@@ -6,9 +6,6 @@
 
 #include <string>
 
-#include "base/math.hpp"
-#include "cli.hpp"
-#include "model/mesh.hpp"
 #include "model/store.hpp"
 #include "succeeded.hpp"
 #include "verify/block_mesh.hpp"
@@ -115,7 +112,8 @@ class ScenePlace : public testing::Test {
 class Case : public Workplace {
  public:
   explicit Case(const std::string& name) : folder_(std::string(HILO_SOURCE) + "/tests/verify/" + name) {}
-  std::string source(const std::string& file) const { return folder_ + "/" + file; }
+  /// A file of the case; one that the test has written comes first.
+  std::string source(const std::string& file) const { return std::filesystem::exists(*this / file) ? *this / file : folder_ + "/" + file; }
   /// hilo-solve on `scene`.toml of the case, with options such as --set time.step=1e-3; expects exit code `expected`.
   Ran solve(const std::string& options = "", const std::string& output = "run.h5", int expected = 0,
             const std::string& scene = "scene") const {
@@ -148,6 +146,11 @@ class Case : public Workplace {
 
  private:
   std::string folder_, mesh_;
+};
+
+/// A case whose scene the test makes.
+struct SceneCase : Case {
+  explicit SceneCase(const std::string& scene) : Case(".") { write("scene.toml", scene); }
 };
 
 }  // namespace hilo::test

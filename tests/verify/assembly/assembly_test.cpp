@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Start positions that the scene draws apart are put together, velocities follow the drive, and what cannot be put together is named.
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::assembly_test {
@@ -37,13 +38,12 @@ TEST(Assembly, MovesAsLittleAsTheMassesSay) {
 // Exact: nothing but the joint asks the beam to move, so it turns as a whole and stays free of stress; the mass norm alone would shear the
 // cells next to the joint.
 TEST(Assembly, TurnsAnElasticBeamAsAWhole) {
-  Case c("assembly");
-  BlockOptions o;
-  o.n[0] = 12, o.n[1] = 1, o.n[2] = 1;
-  o.high = Vec3(1, 0.05, 0.05);
-  const Mesh mesh = block_mesh(o);
+  SceneCase c(solid(2e9, 0.3, 1000) +
+              axial("revolute", "motor", "ground", "xmin", {0, 0.025, 0.025}, {0, -1, 0}, "angle = 0.5\nhistory = 1") +
+              in_time(0.01, 1e-3));
+  const Mesh mesh = block_mesh({.n = {12, 1, 1}, .high = {1, 0.05, 0.05}});
   c.use(mesh);
-  const Results r = c.solved("--set output.interval=0.01", "run.h5", "beam");
+  const Results r = c.solved("--set output.interval=0.01");
   const Vec3 at(0, 0.025, 0.025);
   const Mat3 R = Eigen::AngleAxisd(0.5, -Vec3::UnitY()).toRotationMatrix();
   const auto u = r.field("displacement", r.steps().front());
@@ -54,12 +54,9 @@ TEST(Assembly, TurnsAnElasticBeamAsAWhole) {
 TEST(Assembly, NamesTheJointThatCannotBeClosed) {
   const Case c("assembly");
   std::string scene = text_of(c.source("rod.toml"));
-  scene += "[[joint]]\nkind = \"spherical\"\nname = \"hook\"\nb = \"ball\"\nat = [3, 4.5, 0]\n";
-  scene += "[[joint]]\nkind = \"spherical\"\nname = \"other hook\"\nb = \"ball\"\nat = [3, 3.5, 0]\n";
-  c.write("scene.toml", scene);
-  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-  EXPECT_EQ(ran.exit, 2) << ran.err;
-  EXPECT_NE(ran.err.find("the joints cannot be put together at the start: joint \""), std::string::npos) << ran.err;
+  c.write("scene.toml", scene + joint("spherical", "hook", "ground", "ball", {3, 4.5, 0}) +
+                            joint("spherical", "other hook", "ground", "ball", {3, 3.5, 0}));
+  expect_end(c.run("hilo-solve --quiet scene.toml -o run.h5"), 2, "the joints cannot be put together at the start: joint \"");
   EXPECT_FALSE(std::filesystem::exists(c / "run.h5"));
 }
 

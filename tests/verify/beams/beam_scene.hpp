@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {

@@ -2,7 +2,6 @@
 // The ladder frame of data/frame: what its tyres carry at rest, its energy over the bump, and modes of a joint of it.
 #include <sstream>
 
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::beams_frame_test {

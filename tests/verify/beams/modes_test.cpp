@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Frequencies, whirls and responses of beams against closed forms, and loads at which frequencies vanish and paths part.
-#include <functional>
-#include <vector>
-
-#include "succeeded.hpp"
 #include "verify/beams/beam_scene.hpp"
 #include "verify/natural_modes/natural_modes.hpp"
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Beams whose section varies along them, against closed forms and integrals over their length.
-#include <functional>
-
 #include "verify/beams/beam_scene.hpp"
 
 namespace hilo::test::beams_taper_test {
@@ -105,9 +103,7 @@ TEST_F(BeamTaper, AConeBucklesAtItsExactLoad) {
 TEST_F(BeamTaper, WhatCannotTaperIsRefused) {
   const auto refused = [&](const std::string& root, const std::string& end, const std::string& points, const std::string& what) {
     work.write("scene.toml", taper_of(root, end, points, 2) + in_steps(1));
-    const Ran r = work.run("hilo-solve scene.toml -o run.h5");
-    EXPECT_EQ(r.exit, 2);
-    EXPECT_NE(r.err.find(what), r.err.npos) << r.err;
+    expect_end(work.run("hilo-solve scene.toml -o run.h5"), 2, what);
   };
   const std::string straight = "[[0, 0, 0], [1, 0, 0]]";
   refused(circle(0.1), rectangle(0.1, 0.1), straight, "scene.toml:16:");

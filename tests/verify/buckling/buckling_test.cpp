@@ -136,9 +136,7 @@ TEST_F(Buckling, OfAFrameThatItsLoadsBendIsThatOfItsNormalForces) {
 
 // The same column of cells, and of a linear region whose stiffness follows its stress.
 TEST_F(Buckling, OfCellsAndOfStiffeningRegionsIsEulers) {
-  BlockOptions o;
-  o.shape = Shape::hex20r;
-  o.n[2] = 10, o.high = Vec3(0.04, 0.05, 1);
+  const BlockOptions o{.shape = Shape::hex20r, .n = {1, 1, 10}, .high = {0.04, 0.05, 1}};
   write_mesh(work / "mesh.h5", block_mesh(o), {"test"});
   const double E = 1e9, euler = pi * pi * E * 0.05 * 0.04 * 0.04 * 0.04 / 12 / 4;
   for (const auto& [fidelity, law] : {std::pair{Fidelity::nonlinear, ""}, std::pair{Fidelity::linear, "stiffening = true"}}) {

@@ -3,7 +3,6 @@
 // tan(in)/cos(30) (FEBio rj13).
 #include <numbers>
 
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::constant_velocity_test {

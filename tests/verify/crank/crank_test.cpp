@@ -5,9 +5,7 @@
 //
 // The reactions of a Radau run are of second order, so the error falls by four with half the step, and (4 r(h/2) - r(h))/3 is left with
 // the next order: 3e-7 of the peak.
-#include "succeeded.hpp"
 #include "verify/truth.hpp"
-#include "verify/verify.hpp"
 
 namespace hilo::test::crank_test {
 namespace {

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A step that is too large is cut and the run goes on; one that cannot be cut further ends the run with exit 3 and the last good state on
 // disk.
-#include "verify/verify.hpp"
+#include "verify/free_bar.hpp"
 
 namespace hilo::test::cutting_test {
 namespace {
 
-BlockOptions bar() {
-  BlockOptions o;
-  o.n[0] = 4;
-  o.high = Vec3(1, 0.1, 0.1);
-  return o;
-}
+/// Free, and turned by six radians in a step.
+const std::string scene = soft_bar("neo-hookean") + initial("block", "spin = [3, 10, 7]") + in_time(2, 0.5);
 
 TEST(StepControl, CutsAStepThatIsTooLargeAndGoesOn) {
-  Case c("cutting");
-  c.use(block_mesh(bar()));
+  SceneCase c(scene);
+  c.use(free_bar());
   const Ran ran = c.solve();
   ASSERT_EQ(ran.exit, 0);
   EXPECT_NE(ran.err.find("step cut"), std::string::npos) << ran.err;
@@ -32,8 +28,8 @@ TEST(StepControl, CutsAStepThatIsTooLargeAndGoesOn) {
 }
 
 TEST(StepControl, StopsWithExitThreeAndAReadableFileWhenItMayNotCut) {
-  Case c("cutting");
-  c.use(block_mesh(bar()));
+  SceneCase c(scene);
+  c.use(free_bar());
   const Ran ran = c.solve("--set solver.cuts=0 --set solver.iterations=4", "run.h5", 3);
   EXPECT_NE(ran.err.find("stopped at t ="), std::string::npos) << ran.err;
   EXPECT_NE(ran.err.find("run.h5"), std::string::npos);

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // time.dissipation of energy-momentum: a stress of second order.  What it changes falls with h^2, the energy that is left and what it
 // stores never rises, and both momenta stay, for every kind of flexible part.
-#include <fmt/format.h>
-
-#include <cmath>
-
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::dissipation_test {
@@ -59,8 +54,7 @@ class Dissipation : public testing::TestWithParam<Kind> {
       parts_ += "area = 0.01\n", mesh_ = "tags.h5";
       return;
     }
-    BlockOptions o;
-    o.shape = k.shape, o.n[0] = info(k.shape).n_nodes > 8 ? 2 : 8, o.high = Vec3(1, 0.1, 0.1);
+    BlockOptions o{.shape = k.shape, .n = {info(k.shape).n_nodes > 8 ? 2 : 8, 1, 1}, .high = {1, 0.1, 0.1}};
     if (!k.region.empty() && k.fidelity == Fidelity::nonlinear) o.n[0] = 4, o.high = Vec3(1, 0.2, 0.05);  // shells
 
     write_mesh((place_ / "mesh.h5"), block_mesh(o), {"test"});
@@ -130,8 +124,7 @@ TEST_P(Dissipation, NeverRaisesTheEnergyAndKeepsMomenta) {
 // Truth: a bar that strikes a wall comes to rest behind the front, which passes its middle at L/2c and again at 3L/2c.
 TEST(DissipationBehindAFront, TakesTheRinging) {
   Workplace place;
-  BlockOptions o;
-  o.n[0] = 100, o.high = Vec3(1, 0.01, 0.01);
+  const BlockOptions o{.n = {100, 1, 1}, .high = {1, 0.01, 0.01}};
   Mesh mesh = block_mesh(o);
   add_node_set(mesh, "middle", [](const Vec3& x) { return std::abs(x[0] - 0.5) < 1e-9; });
   write_mesh(place / "mesh.h5", mesh, {"test"});

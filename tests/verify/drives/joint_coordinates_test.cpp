@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Histories of the slide and the angle of joints, against what probes and closed forms say of the same motion.
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::joint_coordinates_test {

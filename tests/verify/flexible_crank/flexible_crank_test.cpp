@@ -6,14 +6,9 @@
 // load, which changes q1 by a fifth where it is small, at 0.1 s.  So the solid is held against the mode with the axial force, and the
 // slider's lag, where the coupling is small, against the published number.  data/crank/o17-beside.toml makes the published model's
 // assumption with the same solid: the axial force is carried beside it.  That is held against the published numbers.
-#include <fmt/format.h>
-
-#include <fstream>
 #include <numbers>
 
-#include "succeeded.hpp"
 #include "verify/truth.hpp"
-#include "verify/verify.hpp"
 
 namespace hilo::test::flexible_crank_test {
 namespace {
@@ -26,10 +21,8 @@ double rigid_slider(double t) { return crank * std::cos(rate * t) + std::sqrt(ro
 
 /// The rod of n x 2 x 2 cells, with what the scenes name of it.
 Mesh rod_mesh(int n = 20) {
-  BlockOptions o;
-  o.n[0] = n, o.n[1] = 2, o.n[2] = 2;
-  o.low = Vec3(crank, -side / 2, -side / 2), o.high = Vec3(crank + rod, side / 2, side / 2);
-  o.regions = {"rod"};
+  const BlockOptions o{
+      .n = {n, 2, 2}, .low = Vec3(crank, -side / 2, -side / 2), .high = Vec3(crank + rod, side / 2, side / 2), .regions = {"rod"}};
   Mesh m = block_mesh(o);
   for (int i = 0; i <= o.n[0]; ++i)
     add_node_set(m, "section" + std::to_string(i), [&](const Vec3& X) { return std::abs(X[0] - crank - rod * i / o.n[0]) < 1e-9; });

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A free body falls by v t + g t^2/2, exactly under the mid-point rule (constant acceleration), rigid or flexible.  FEBio dy01/dy05 is the
 // same with unit acceleration and 1 s: 0.5.
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::free_fall_test {
 namespace {
+
+const std::string falls = "gravity = [1, 2, -9.81]\n" + solid(2e11, 0.3, 7800, "block") + initial("block", "velocity = [3, -1, 2]") +
+                          probe("all", "block") + in_time(1, 0.01) + "[output]\ninterval = 0.25\n";
 
 class FreeFall : public testing::TestWithParam<std::tuple<Shape, Fidelity>> {};
 INSTANTIATE_TEST_SUITE_P(
@@ -15,16 +19,16 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(FreeFall, EveryNodeFallsAsGalileiSays) {
   const auto [shape, fidelity] = GetParam();
-  Case c("free_fall");
-  BlockOptions o;
-  o.shape = shape;
-  o.n[0] = 2, o.n[1] = 1, o.n[2] = 1;
-  o.high = Vec3(0.4, 0.2, 0.1);
-  o.map = [](const Vec3& x) {
-    return Vec3(x +
-                0.02 * Vec3(scatter(std::lround(100 * x[0])), scatter(std::lround(77 * x[1])), scatter(std::lround(99 * x[2] + 7 * x[0]))));
-  };
-  c.use(block_mesh(o), {fidelity});
+  SceneCase c(falls);
+  c.use(block_mesh({.shape = shape,
+                    .n = {2, 1, 1},
+                    .high = {0.4, 0.2, 0.1},
+                    .map =
+                        [](const Vec3& x) {
+                          return Vec3(x + 0.02 * Vec3(scatter(std::lround(100 * x[0])), scatter(std::lround(77 * x[1])),
+                                                      scatter(std::lround(99 * x[2] + 7 * x[0]))));
+                        }}),
+        {fidelity});
   const Results r = c.solved();
   const Vec3 v(3, -1, 2), g(1, 2, -9.81);
   for (const std::string& step : r.steps()) {
@@ -43,17 +47,12 @@ TEST_P(FreeFall, EveryNodeFallsAsGalileiSays) {
 
 // Truth: an accelerometer in free fall feels nothing; at rest on the ground it feels +1 g upward.
 TEST(FreeFallSensor, FeelsNothing) {
-  Case c("free_fall");
+  const std::string seat = "[[sensor]]\nname = \"seat\"\non = \"block\"\n";
+  SceneCase c(falls + seat);
   c.use(block_mesh({}), {Fidelity::rigid});
-  c.write("scene.toml", text_of(c.source("scene.toml")) + "\n[[sensor]]\nname = \"seat\"\non = \"block\"\n");
-  ASSERT_EQ(c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5").exit, 0);
-  EXPECT_LT(c.results().history("sensor/seat").cwiseAbs().maxCoeff(), 1e-9);
-  c.write(
-      "scene.toml",
-      text_of(c.source("scene.toml")) +
-          "\n[[sensor]]\nname = \"seat\"\non = \"block\"\n[[joint]]\nkind = \"fixed\"\nname = \"bolt\"\nb = \"block\"\nat = [0, 0, 0]\n");
-  ASSERT_EQ(c.run("hilo-solve --quiet scene.toml tags.h5 --set gravity=[0,0,-9.80665] -o run.h5").exit, 0);
-  const auto felt = c.results().history("sensor/seat");
+  EXPECT_LT(c.solved().history("sensor/seat").cwiseAbs().maxCoeff(), 1e-9);
+  c.write("scene.toml", falls + seat + joint("fixed", "bolt", "ground", "block", Vec3::Zero()));
+  const auto felt = c.solved("--set gravity=[0,0,-9.80665]").history("sensor/seat");
   for (Eigen::Index i = 0; i < felt.rows(); ++i) ASSERT_LT((felt.row(i).transpose() - Vec3(0, 0, 1)).norm(), 1e-9) << "row " << i;
 }
 

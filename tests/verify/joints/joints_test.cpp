@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Positions, rates and reactions of single-joint pendulums as ADAMS gives them (Chrono data/testing/joints).  Rforce is
 // the force on the ground, minus ours, which is on b in the joint frame.  Chrono accepts 1e-3 m, 1e-4 m/s and 2e-2 N; here h = 1e-3 s.
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::joints_test {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the modes of a linear region leave out, as the run tells it, against what they truly do.
-#include <fmt/format.h>
-
 #include <Eigen/QR>
-#include <fstream>
 #include <numbers>
 
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::left_out_test {
@@ -16,9 +12,7 @@ namespace {
 // How much modes leave out, told by the run itself, against the true difference from a run with all modes: of a cantilever shaken between
 // and above its first frequencies (8 and 50 Hz), in the norm of strain energy.
 TEST(LinearRegion, TellsWhatItsModesLeaveOut) {
-  BlockOptions o;
-  o.n[0] = 20;
-  o.high = Vec3(1, 0.05, 0.05);
+  const BlockOptions o{.n = {20, 1, 1}, .high = {1, 0.05, 0.05}};
   const std::string text = solid(1e9, 0.3, 1000, "block", "", "up_to = 1e5") + held("xmin") +
                            force("push", "xmax", {0, 0, 10}, "history = \"shake\"") + R"([history.shake]
 file = "shake.csv"

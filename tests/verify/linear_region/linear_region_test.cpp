@@ -1,43 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Linear regions: modes about mean axes keep what rigid and nonlinear ones keep, and agree with both where they should.
-#include <fmt/format.h>
-
 #include <numbers>
 
-#include "succeeded.hpp"
-#include "verify/verify.hpp"
+#include "verify/linear_region/bars.hpp"
 
 namespace hilo::test::linear_region_test {
 namespace {
 
-Mesh bar(double from, double to, int n, Shape shape = Shape::hex8) {
-  BlockOptions o;
-  o.shape = shape;
-  o.n[0] = n;
-  o.low = Vec3(from, 0, 0), o.high = Vec3(to, 0.1, 0.1);
-  return block_mesh(o);
-}
-
-/// Meshes as one, regions and sets under a prefix.
-Mesh together(const std::vector<std::pair<const Mesh*, std::string>>& parts) {
-  Mesh out;
-  for (const auto& [m, prefix] : parts) {
-    const std::int64_t nodes = out.n_nodes(), cells = out.n_cells();
-    const auto region = static_cast<std::int32_t>(out.region_name.size());
-    for (size_t r = 0; r < m->region_name.size(); ++r)
-      out.region_name.push_back(prefix + m->region_name[r]), out.region_data.push_back(m->region_data[r]);
-    for (std::int64_t i = 0; i < m->n_nodes(); ++i) out.X.push_back(m->X[i]), out.node_id.push_back(nodes + i);
-    for (std::int64_t e = 0; e < m->n_cells(); ++e) {
-      std::vector<std::int64_t> list;
-      for (const std::int64_t i : m->cell(e)) list.push_back(nodes + i);
-      out.add_cell(static_cast<Shape>(m->shape[e]), list, region + m->region[e], cells + e);
-    }
-    for (const auto& [name, set] : m->facet_sets)
-      for (const Facet& f : set) out.facet_sets[prefix + name].push_back({cells + f.cell, f.facet});
-  }
-  return out;
-}
-Mesh both(const Mesh& a, const Mesh& b) { return together({{&a, "left_"}, {&b, "right_"}}); }
+using namespace soft_bars;
 
 /// Energy and momenta of a run in free flight stay, over what they are.
 void expect_kept(const Results& r, double energy_at_most, double momentum_at_most) {
@@ -54,21 +24,21 @@ void expect_kept(const Results& r, double energy_at_most, double momentum_at_mos
 }
 
 TEST(LinearRegion, TumblingFreelyKeepsEnergyAndMomenta) {
-  Case c("linear_region");
+  SceneCase c(in_flight);
   c.use(bar(0, 1, 6), {Fidelity::linear});
-  expect_kept(c.solved("", "run.h5", "free"), 1e-12, 1e-12);
+  expect_kept(c.solved(), 1e-12, 1e-12);
 }
 
 TEST(LinearRegion, ThatStiffensKeepsEnergyAndMomenta) {
-  Case c("linear_region");
+  SceneCase c(in_flight);
   c.use(bar(0, 1, 6), {Fidelity::linear});
-  expect_kept(c.solved("--set 'region.*.stiffening=true' --set 'region.*.modes=6'", "run.h5", "free"), 1e-12, 1e-12);
+  expect_kept(c.solved("--set 'region.*.stiffening=true' --set 'region.*.modes=6'"), 1e-12, 1e-12);
 }
 
 TEST(LinearRegion, OnAHingeWithAnotherKeepsEnergyAndMomenta) {
-  Case c("linear_region");
-  c.use(both(bar(0, 1, 4), bar(1, 2, 4)), {Fidelity::linear, Fidelity::linear});
-  const Results r = c.solved("", "run.h5", "pair");
+  SceneCase c(pair_in_flight);
+  c.use(two_bars(4), {Fidelity::linear, Fidelity::linear});
+  const Results r = c.solved();
   expect_kept(r, 1e-11, 1e-12);
   EXPECT_LT(r.history("constraint").maxCoeff(), 1e-12);
 }
@@ -78,37 +48,33 @@ std::string long_run() {
   return "--set time.end=1580 --set output.interval=158 --set initial.1.velocity=[0,0,0]";  // 1e5 steps; L about a point that stays near
 }
 TEST(DISABLED_LongLinearRegion, TumblingFreelyKeepsEnergyAndMomenta) {
-  Case c("linear_region");
+  SceneCase c(in_flight);
   c.use(bar(0, 1, 6), {Fidelity::linear});
-  expect_kept(c.solved(long_run(), "run.h5", "free"), 1e-12, 1e-12);
+  expect_kept(c.solved(long_run()), 1e-12, 1e-12);
 }
 TEST(DISABLED_LongLinearRegion, OnAHingeWithAnotherKeepsEnergyMomentaAndTheHinge) {
-  Case c("linear_region");
-  c.use(both(bar(0, 1, 4), bar(1, 2, 4)), {Fidelity::linear, Fidelity::linear});
-  const Results r = c.solved(long_run() + " --set material.soft.E=1e8", "run.h5", "pair");
+  SceneCase c(pair_in_flight);
+  c.use(two_bars(4), {Fidelity::linear, Fidelity::linear});
+  const Results r = c.solved(long_run() + " --set material.soft.E=1e8");
   expect_kept(r, 1e-12, 1e-12);
   EXPECT_LT(r.history("constraint").maxCoeff(), 50 * 2.2e-16 * 2);
 }
 
 Mesh bar_of_two_regions() {
-  BlockOptions o;
-  o.n[0] = 6;
-  o.high = Vec3(1, 0.1, 0.1);
-  o.regions = {"near", "far"};
-  o.region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; };
-  return block_mesh(o);
+  return block_mesh(
+      {.n = {6, 1, 1}, .high = {1, 0.1, 0.1}, .regions = {"near", "far"}, .region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; }});
 }
 class Beside : public testing::TestWithParam<std::pair<const char*, Fidelity>> {};
 TEST_P(Beside, AnotherRegionItKeepsEnergyAndMomenta) {
-  Case c("linear_region");
+  SceneCase c(in_flight);
   c.use(bar_of_two_regions(), {Fidelity::linear, GetParam().second});
-  expect_kept(c.solved("", "run.h5", "free"), 1e-10, 1e-12);
+  expect_kept(c.solved(), 1e-10, 1e-12);
 }
 class DISABLED_LongBeside : public Beside {};
 TEST_P(DISABLED_LongBeside, AnotherLinearRegionKeepsEnergyAndMomenta) {
-  Case c("linear_region");
+  SceneCase c(in_flight);
   c.use(bar_of_two_regions(), {Fidelity::linear, GetParam().second});
-  expect_kept(c.solved(long_run(), "run.h5", "free"), 1e-12, 1e-12);
+  expect_kept(c.solved(long_run()), 1e-12, 1e-12);
 }
 INSTANTIATE_TEST_SUITE_P(DISABLED_LongLinearRegion, DISABLED_LongBeside,
                          testing::Values(std::pair{"Rigid", Fidelity::rigid}, std::pair{"Nonlinear", Fidelity::nonlinear}),
@@ -120,11 +86,11 @@ INSTANTIATE_TEST_SUITE_P(LinearRegion, Beside,
 
 // Energy and momenta of a run on two ranks are those of a serial one, and so is where its nodes are.
 TEST(LinearRegion, IsTheSameOnTwoRanks) {
-  Case c("linear_region");
-  c.use(both(bar(0, 1, 4), bar(1, 2, 4)), {Fidelity::linear, Fidelity::linear});
+  SceneCase c(pair_in_flight);
+  c.use(two_bars(4), {Fidelity::linear, Fidelity::linear});
   const std::string end = "--set time.end=0.316";
-  const auto serial = c.solved(end, "run.h5", "pair").field("displacement");
-  succeeded(mpirun(2, "hilo-solve --quiet '" + c.source("pair.toml") + "' tags.h5 " + end + " -o ranks.h5", c.path()));
+  const auto serial = c.solved(end).field("displacement");
+  succeeded(mpirun(2, "hilo-solve --quiet scene.toml tags.h5 " + end + " -o ranks.h5", c.path()));
   const auto ranks = c.results("ranks.h5").field("displacement");
   ASSERT_EQ(ranks.size(), serial.size());
   for (size_t i = 0; i < serial.size(); ++i) EXPECT_LT((ranks[i] - serial[i]).norm(), 1e-11) << i;
@@ -132,25 +98,24 @@ TEST(LinearRegion, IsTheSameOnTwoRanks) {
 
 // Modes do not stiffen: a free bar turns at 18.3 rad/s, its first frequency is 64.6 sqrt(E/1e7) rad/s.
 TEST(LinearRegion, ThatSpinsNearItsFirstFrequencyIsWarnedOfAndBeyondItRefused) {
-  Case c("linear_region");
+  SceneCase c(in_flight);
   c.use(bar(0, 1, 6), {Fidelity::linear});
   const std::string end = "--set time.end=0.0316 --set material.soft.E=";
-  EXPECT_EQ(c.solve(end + "1e8", "run.h5", 0, "free").err.find("spins"), std::string::npos);
-  const Ran near = c.solve(end + "3e6", "run.h5", 0, "free");
+  EXPECT_EQ(c.solve(end + "1e8").err.find("spins"), std::string::npos);
+  const Ran near = c.solve(end + "3e6");
   EXPECT_NE(near.err.find("spins with 18"), std::string::npos) << near.err;
   EXPECT_EQ(near.err.find("spins with"), near.err.rfind("spins with")) << "once, though a second solution runs beside\n" << near.err;
   EXPECT_NE(near.err.find("tag it nonlinear"), std::string::npos) << near.err;
-  const Ran beyond = c.solve(end + "3e5", "run.h5", 3, "free");
+  const Ran beyond = c.solve(end + "3e5", "run.h5", 3);
   EXPECT_NE(beyond.err.find("linear region \"block\" spins with 18"), std::string::npos) << beyond.err;
 }
 
 // In small motion strains of the second degree change nothing: a clamped face that they allow to stretch must not.
 TEST(LinearRegion, ThatStiffensIsLinearInSmallMotion) {
-  Case c("linear_region");
+  SceneCase c(sagging);
   c.use(bar(0, 1, 5), {Fidelity::linear});
   const std::string modes = "--set 'region.*.modes=40' --set 'region.*.up_to=1e9' --set 'region.*.stiffening=";
-  const auto a = c.solved(modes + "false'", "run.h5", "cantilever").history("probe/tip"),
-             b = c.solved(modes + "true'", "run.h5", "cantilever").history("probe/tip");
+  const auto a = c.solved(modes + "false'").history("probe/tip"), b = c.solved(modes + "true'").history("probe/tip");
   const Eigen::MatrixXd u = a.leftCols(3).rowwise() - a.row(0).head(3), v = b.leftCols(3).rowwise() - b.row(0).head(3);
   EXPECT_LT((u - v).cwiseAbs().maxCoeff(), 1e-4 * u.cwiseAbs().maxCoeff());
 }
@@ -158,12 +123,10 @@ TEST(LinearRegion, ThatStiffensIsLinearInSmallMotion) {
 // A free bar that tumbles with half its first frequency, and with 1.3 times that, where linear strains are refused.  Truth: all
 // its cells.
 TEST(LinearRegion, ThatSpinsStiffens) {
-  Case c("linear_region");
+  SceneCase c(in_flight);
   const auto ends = [&](Fidelity f, const std::string& options) {
     c.use(bar(0, 1, 6), {f});
-    return c
-        .solved("--set time.step=0.005 --set time.end=2 --set 'region.*.modes=6' --set 'initial.1.velocity=[0, 0, 0]' " + options, "run.h5",
-                "free")
+    return c.solved("--set time.step=0.005 --set time.end=2 --set 'region.*.modes=6' --set 'initial.1.velocity=[0, 0, 0]' " + options)
         .field("displacement");
   };
   const auto apart = [](const auto& a, const auto& b) {
@@ -185,18 +148,15 @@ TEST(LinearRegion, ThatSpinsStiffens) {
 
 // Velocities of sets are those of modes: a beam that is bent by its start, section by section, moves as its cells do.
 TEST(LinearRegion, StartsAsItsSectionsDo) {
-  Case c("linear_region");
   Mesh m = bar(0, 1, 10);
-  std::string scene = text_of(c.source("cantilever.toml"));
-  scene.replace(scene.find("gravity"), scene.find('\n', scene.find("gravity")) - scene.find("gravity"), "");
+  std::string scene = cantilever;
   for (int i = 0; i <= 10; ++i) {
     const std::string name = "section" + std::to_string(i);
     add_node_set(m, name, [&](const Vec3& X) { return std::abs(X[0] - 0.1 * i) < 1e-9; });
     const double x = 0.1 * i;  // a parabola, and the turns of its sections
-    scene += "[[initial]]\non = [\"" + name + "\"]\nvelocity = [0, 0, " + std::to_string(1e-4 * x * x) + "]\nspin = [0, " +
-             std::to_string(-2e-4 * x) + ", 0]\nabout = [" + std::to_string(x) + ", 0.05, 0.05]\n";
+    scene += initial(name, fmt::format("velocity = [0, 0, {}]\nspin = [0, {}, 0]\nabout = [{}, 0.05, 0.05]", 1e-4 * x * x, -2e-4 * x, x));
   }
-  c.write("scene.toml", scene);
+  SceneCase c(scene);
   Eigen::MatrixXd tip[2];
   for (const Fidelity f : {Fidelity::nonlinear, Fidelity::linear}) {
     c.use(m, {f});
@@ -215,20 +175,20 @@ TEST(LinearRegion, StartsAsItsSectionsDo) {
 }
 
 TEST(LinearRegion, OfMetalDoesNotFlowAndSaysSo) {
-  Case c("linear_region");
+  SceneCase c(in_flight);
   c.use(bar(0, 1, 4), {Fidelity::linear});
   const std::string end = "--set time.end=0.0316 ", metal = "--set 'material.soft.kind=\"j2\"' --set material.soft.yield=1e9";
-  EXPECT_NE(c.solve(end + metal, "run.h5", 0, "free").err.find("does not yield"), std::string::npos);
-  EXPECT_EQ(c.solve(end, "run.h5", 0, "free").err.find("does not yield"), std::string::npos);
+  EXPECT_NE(c.solve(end + metal).err.find("does not yield"), std::string::npos);
+  EXPECT_EQ(c.solve(end).err.find("does not yield"), std::string::npos);
 }
 
 TEST(LinearRegion, WhoseFaceTurnsFarIsWarnedOf) {
-  Case c("linear_region");
-  c.use(both(bar(0, 1, 4), bar(1, 2, 4)), {Fidelity::linear, Fidelity::linear});
+  SceneCase c(pair_in_flight);
+  c.use(two_bars(4), {Fidelity::linear, Fidelity::linear});
   const std::string end = "--set time.end=0.316 --set material.soft.E=";
-  const Ran far = c.solve(end + "3e6", "run.h5", 0, "pair");
+  const Ran far = c.solve(end + "3e6");
   EXPECT_NE(far.err.find("rad at \""), std::string::npos) << far.err;
-  EXPECT_EQ(c.solve(end + "1e9", "run.h5", 0, "pair").err.find("rad at"), std::string::npos);
+  EXPECT_EQ(c.solve(end + "1e9").err.find("rad at"), std::string::npos);
 }
 
 // The bend of 45 degrees that a force out of its plane turns far, of eight parts that each bend little: the tip is at (47.23, 15.79, 53.37)
@@ -239,49 +199,34 @@ TEST(LinearRegion, EightTurnFarTogether) {
   const auto at = [](double angle, double r) { return Vec3(r * std::sin(angle), R - r * std::cos(angle), 0); };
   std::vector<Mesh> pieces(n);
   std::vector<std::pair<const Mesh*, std::string>> parts;
-  std::string scene = "[material.m]\nE = 1e7\nnu = 0\ndensity = 1\n[region.\"*\"]\nmaterial = \"m\"\n";
-  const auto point = [](const Vec3& x) { return "[" + std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", 0]"; };
+  std::string scene = solid(1e7, 0, 1);
   for (int k = 0; k < n; ++k) {
-    BlockOptions o;
-    o.shape = Shape::hex20r;
-    o.n[0] = 6;
-    o.low = Vec3(k * step, -0.5, -0.5), o.high = Vec3((k + 1) * step, 0.5, 0.5);
-    pieces[k] = block_mesh(o);
+    pieces[k] =
+        block_mesh({.shape = Shape::hex20r, .n = {6, 1, 1}, .low = Vec3(k * step, -0.5, -0.5), .high = Vec3((k + 1) * step, 0.5, 0.5)});
     for (Vec3& x : pieces[k].X) x = at(x[0], R - x[1]) + Vec3(0, 0, x[2]);
-    const std::string name = "p" + std::to_string(k) + "_", before = k ? "p" + std::to_string(k - 1) + "_xmax" : "ground";
+    const std::string name = fmt::format("p{}_", k), before = k ? fmt::format("p{}_xmax", k - 1) : "ground";
     parts.emplace_back(&pieces[k], name);
-    scene += "[[joint]]\nkind = \"fixed\"\nname = \"j" + std::to_string(k) + "\"\na = \"" + before + "\"\nb = \"" + name +
-             "xmin\"\nat = " + point(at(k * step, R)) + "\n";
+    scene += joint("fixed", fmt::format("j{}", k), before, name + "xmin", at(k * step, R));
   }
-  scene +=
-      "[[load]]\nkind = \"force\"\nname = \"push\"\non = \"p7_xmax\"\nforce = [0, 0, 600]\n[[probe]]\nname = \"tip\"\non = \"p7_xmax\"\n"
-      "[time]\nanalysis = \"static\"\nsteps = 10\n";
-  Case c("linear_region");
+  SceneCase c(scene + force("push", "p7_xmax", {0, 0, 600}) + probe("tip", "p7_xmax") + in_steps(10));
   c.use(together(parts), std::vector<Fidelity>(n, Fidelity::linear));
-  c.write("bend.toml", scene);
-  succeeded(c.run("hilo-solve --quiet bend.toml tags.h5 -o run.h5"));
-  const auto tip = c.results().history("probe/tip");
+  const auto tip = c.solved().history("probe/tip");
   const Vec3 end = tip.row(tip.rows() - 1).head<3>();
   EXPECT_LT((end - Vec3(47.23, 15.79, 53.37)).norm(), 0.03 * 53.37) << end.transpose();
 }
 
 // A set that shares nodes with another that is held joins it, at every level: the bar sags from the shelf on, not from the root.
 TEST(LinearRegion, SetsThatOverlapAreOne) {
-  Case c("linear_region");
   Mesh m = bar(0, 1, 10);
   add_node_set(m, "root", [](const Vec3& X) { return X[0] < 1e-9; });
   add_node_set(m, "shelf", [](const Vec3& X) { return X[0] < 0.4 && X[2] < 1e-9; });
-  c.write("overlap.toml",
-          "gravity = [0, 0, -1]\n[material.soft]\nE = 1e7\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"soft\"\n"
-          "[[body]]\nname = \"weight\"\nmass = 1\ncom = [0.2, 0, -0.1]\ninertia = [1, 1, 1]\n"
-          "[[joint]]\nkind = \"fixed\"\nname = \"wall\"\nb = \"root\"\nat = [0, 0.05, 0.05]\n"
-          "[[joint]]\nkind = \"fixed\"\nname = \"hung\"\na = \"shelf\"\nb = \"weight\"\nat = [0.2, 0.05, 0]\n"
-          "[[probe]]\nname = \"tip\"\non = \"xmax\"\n[time]\nanalysis = \"static\"\n");
+  SceneCase c("gravity = [0, 0, -1]\n" + soft + body("weight", 1, {0.2, 0, -0.1}, {1, 1, 1}) +
+              joint("fixed", "wall", "ground", "root", {0, 0.05, 0.05}) + joint("fixed", "hung", "shelf", "weight", {0.2, 0.05, 0}) +
+              probe("tip", "xmax") + "[time]\nanalysis = \"static\"\n");
   double sag[2];
   for (const Fidelity f : {Fidelity::nonlinear, Fidelity::linear}) {
     c.use(m, {f});
-    succeeded(c.run("hilo-solve --quiet overlap.toml tags.h5 -o run.h5"));
-    const auto tip = c.results().history("probe/tip");
+    const auto tip = c.solved().history("probe/tip");
     sag[f == Fidelity::linear] = tip(tip.rows() - 1, 2) - tip(0, 2);
   }
   EXPECT_LT(sag[0], -1e-5);
@@ -291,11 +236,11 @@ TEST(LinearRegion, SetsThatOverlapAreOne) {
 // With as many modes as its cells have freedoms a linear region is the whole finite-element model, for small motions: u across is the same
 // to round-off of the cells' positions; along, the cells know the shortening u^2/L of what bends.
 TEST(LinearRegion, WithAllModesVibratesAsTheCellsDo) {
-  Case c("linear_region");
+  SceneCase c(sagging);
   Eigen::MatrixXd tip[2];
   for (const Fidelity f : {Fidelity::nonlinear, Fidelity::linear}) {
     c.use(bar(0, 1, 5), {f});
-    tip[f == Fidelity::linear] = c.solved("--set gravity=[0,1e-4,-1e-4]", "run.h5", "cantilever").history("probe/tip");
+    tip[f == Fidelity::linear] = c.solved("--set gravity=[0,1e-4,-1e-4]").history("probe/tip");
   }
   const Eigen::MatrixXd u[2] = {tip[0].leftCols(3).rowwise() - tip[0].row(0).head(3), tip[1].leftCols(3).rowwise() - tip[1].row(0).head(3)};
   const Eigen::MatrixXd off = (u[1] - u[0]).cwiseAbs();
@@ -305,10 +250,10 @@ TEST(LinearRegion, WithAllModesVibratesAsTheCellsDo) {
 }
 
 TEST(LinearRegion, TendsToTheRigidBodyWithTheInverseOfItsStiffness) {
-  Case c("linear_region");
+  SceneCase c(in_flight);
   const auto ends = [&](Fidelity f, const std::string& E) {
     c.use(bar(0, 1, 4), {f});
-    return c.solved("--set time.end=0.316 --set material.soft.E=" + E, "run.h5", "free").field("displacement");
+    return c.solved("--set time.end=0.316 --set material.soft.E=" + E).field("displacement");
   };
   const auto rigid = ends(Fidelity::rigid, "1e7");
   double off[2];

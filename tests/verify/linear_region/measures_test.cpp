@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a linear region tells of its own strains: its share of the buckling load, strains of the second degree that its supports hold, and
 // the band of what its modes leave out; each against a closed form and against what cells of finite strain do.
-#include <fmt/format.h>
-
-#include <fstream>
 #include <numbers>
 
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::measures_test {
@@ -17,10 +13,7 @@ constexpr double pi = std::numbers::pi, E = 1e9, h = 0.05, L = 1, I = h * h * h 
 class LinearMeasures : public testing::Test {
  protected:
   LinearMeasures() : c("linear_region") {
-    BlockOptions o;
-    o.n[0] = 24, o.n[1] = o.n[2] = 2;
-    o.low = Vec3(0, -h / 2, -h / 2), o.high = Vec3(L, h / 2, h / 2);
-    mesh = block_mesh(o);
+    mesh = block_mesh({.n = {24, 2, 2}, .low = Vec3(0, -h / 2, -h / 2), .high = Vec3(L, h / 2, h / 2)});
   }
   /// Statics of the bar, linear or nonlinear.
   struct Answer {

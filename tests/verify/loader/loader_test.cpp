@@ -2,11 +2,6 @@
 // data/loader against its drawing: the pins of a Z-bar linkage go where circles meet, and by virtual work the forces of both cylinders
 // carry the weights.  Joints with as many rows as the linkage needs have no redundant one; a revolute at every pin has three too many in
 // each loop.
-#include <algorithm>
-#include <cmath>
-#include <map>
-
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::loader_test {

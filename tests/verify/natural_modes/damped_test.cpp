@@ -12,13 +12,10 @@ TEST_F(NaturalModes, WithADamperThatCouplesThemAreComplex) {
   using C = std::complex<double>;
   const double m1 = 2, m2 = 3, k1 = 4000, k2 = 3000, c = 100;
   std::string scene = body("m1", m1, {1, 0, 0}, {1, 1, 1}) + body("m2", m2, {2, 0, 0}, {1, 1, 1});
-  for (const char* name : {"1", "2"})
-    scene += std::string("[[joint]]\nkind = \"prismatic\"\nname = \"g") + name + "\"\nb = \"m" + name + "\"\nat = [" + name +
-             ", 0, 0]\naxis = [1, 0, 0]\n";
-  scene +=
-      "[[spring]]\nkind = \"axial\"\nname = \"k1\"\nb = \"m1\"\nat_a = [0, 0, 0]\nat_b = [1, 0, 0]\nstiffness = 4000\n"
-      "[[spring]]\nkind = \"axial\"\nname = \"k2\"\na = \"m1\"\nb = \"m2\"\nat_a = [1, 0, 0]\nat_b = [2, 0, 0]\nstiffness = 3000\ndamping "
-      "= 100\n[[probe]]\nname = \"p1\"\non = \"m1\"\n";
+  for (const double x : {1., 2.})
+    scene += axial("prismatic", fmt::format("g{}", x), "ground", fmt::format("m{}", x), {x, 0, 0}, Vec3::UnitX());
+  scene += spring("axial", "k1", "ground", "m1", "at_a = [0, 0, 0]\nat_b = [1, 0, 0]\nstiffness = 4000") +
+           spring("axial", "k2", "m1", "m2", "at_a = [1, 0, 0]\nat_b = [2, 0, 0]\nstiffness = 3000\ndamping = 100") + probe("p1", "m1");
   const auto found = modes(scene, 2);
   ASSERT_EQ(found.rows(), 2);
   const auto pencil = [&](C s) {
@@ -45,17 +42,16 @@ TEST_F(NaturalModes, WithADamperThatCouplesThemAreComplex) {
 
 // Beyond critical damping, and upside down: real poles in pairs.
 TEST_F(NaturalModes, ThatCreepHaveRatiosAboveOne) {
-  const std::string scene =
-      body("mass", 3, {0, 0, 0}, {1, 1, 1}) +
-      "[[joint]]\nkind = \"prismatic\"\nname = \"guide\"\nb = \"mass\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n"
-      "[[spring]]\nkind = \"bushing\"\nname = \"s\"\nb = \"mass\"\nat = [0, 0, 0]\nstiffness = [0, 0, 1200]\ndamping = [0, 0, 300]\n";
+  const std::string scene = body("mass", 3, {0, 0, 0}, {1, 1, 1}) +
+                            axial("prismatic", "guide", "ground", "mass", Vec3::Zero(), Vec3::UnitZ()) +
+                            bushing("s", "mass", Vec3::Zero(), {0, 0, 1200}, "damping = [0, 0, 300]");
   const auto found = modes(scene, 1);
   EXPECT_NEAR(found(0, 0), std::sqrt(400.) / (2 * pi), 1e-8);
   EXPECT_NEAR(found(0, 1), 300 / (2 * std::sqrt(1200. * 3)), 1e-8);
-  const auto falls = modes("gravity = [0, 0, 9.81]\n" + body("arm", 2, {0, 0, -0.5}, {0.1, 0.2, 0.15}) +
-                               "[[joint]]\nkind = \"revolute\"\nname = \"pin\"\nb = \"arm\"\nat = [0, 0, 0]\naxis = [0, 1, 0]\n"
-                               "[[spring]]\nkind = \"torsion\"\nname = \"d\"\nb = \"arm\"\naxis = [0, 1, 0]\nstiffness = 0\ndamping = 2\n",
-                           1);
+  const auto falls =
+      modes("gravity = [0, 0, 9.81]\n" + body("arm", 2, {0, 0, -0.5}, {0.1, 0.2, 0.15}) + pin("pin", "ground", "arm", Vec3::Zero()) +
+                spring("torsion", "d", "ground", "arm", "axis = [0, 1, 0]\nstiffness = 0\ndamping = 2"),
+            1);
   const double J = 0.2 + 2 * 0.25, g = 2 * 9.81 * 0.5;
   EXPECT_NEAR(-falls(0, 0) * 2 * pi, (-2 + std::sqrt(4 + 4 * J * g)) / (2 * J), 1e-6);
 }
@@ -66,10 +62,7 @@ TEST_F(NaturalModes, OfACantileverWithADamperAtItsTip) {
   using C = std::complex<double>;
   use(beam({1, 0.015, 0.01}, 30));
   const double EI = 2e11 * 0.015 * std::pow(0.01, 3) / 12, rho_A = 8000 * 0.015 * 0.01, c = 8;
-  const auto f = modes(steel +
-                           "[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n[[spring]]\nkind = \"bushing\"\nname = \"d\"\nb "
-                           "= \"xmax\"\nat = [1, 0.0075, 0.005]\nstiffness = [0, 0, 0]\ndamping = [0, 0, 8]\n",
-                       2);
+  const auto f = modes(steel + held("xmin") + bushing("d", "xmax", {1, 0.0075, 0.005}, Vec3::Zero(), "damping = [0, 0, 8]"), 2);
   // w = A (cosh bx - cos bx) + B (sinh bx - sin bx), b^4 = -rho A s^2/(E I); no moment at the tip, and its shear is the damper's force
   const auto left = [&](C s) {
     const C b = std::pow(-rho_A * s * s / EI, 0.25), ch = std::cosh(b), sh = std::sinh(b), co = std::cos(b), si = std::sin(b);
@@ -94,18 +87,17 @@ TEST_F(NaturalModes, StrongDampersCoupleThoseAskedForToManyOthers) {
   std::string scene;
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n), K = Eigen::MatrixXd::Zero(n, n);
   A.topRightCorner(n, n).setIdentity();
-  const auto spring = [&](const std::string& name, const std::string& ends, double k, double c) {
-    scene +=
-        fmt::format("[[spring]]\nkind = \"bushing\"\nname = \"{}\"\n{}\nstiffness = [0, 0, {}]\ndamping = [0, 0, {}]\n", name, ends, k, c);
+  const auto link = [&](const std::string& name, const std::string& a, const std::string& b, double x, double k, double c) {
+    scene += spring("bushing", name, a, b, fmt::format("at = [{}, 0, 0]\nstiffness = [0, 0, {}]\ndamping = [0, 0, {}]", x, k, c));
   };
   for (int i = 0; i < n; ++i) {
     const double c = dampers[i % 6];
     scene += body(fmt::format("b{}", i), mass(i), {double(i), 0, 0}, {1, 1, 1}) +
-             fmt::format("[[joint]]\nkind = \"prismatic\"\nname = \"j{0}\"\nb = \"b{0}\"\nat = [{0}, 0, 0]\naxis = [0, 0, 1]\n", i);
-    spring(fmt::format("s{}", i), fmt::format("b = \"b{0}\"\nat = [{0}, 0, 0]", i), 10 * (i + 1), c);
+             axial("prismatic", fmt::format("j{}", i), "ground", fmt::format("b{}", i), {double(i), 0, 0}, Vec3::UnitZ());
+    link(fmt::format("s{}", i), "ground", fmt::format("b{}", i), i, 10 * (i + 1), c);
     K(i, i) += 10 * (i + 1), A(n + i, n + i) = -c / mass(i);
     if (i == 0) continue;
-    spring(fmt::format("t{}", i), fmt::format("a = \"b{}\"\nb = \"b{}\"\nat = [{}, 0, 0]", i - 1, i, i - 0.5), 1e4, 0);
+    link(fmt::format("t{}", i), fmt::format("b{}", i - 1), fmt::format("b{}", i), i - 0.5, 1e4, 0);
     K(i, i) += 1e4, K(i - 1, i - 1) += 1e4, K(i, i - 1) -= 1e4, K(i - 1, i) -= 1e4;
   }
   for (int i = 0; i < n; ++i) A.row(n + i).head(n) = -K.row(i) / mass(i);
@@ -125,21 +117,12 @@ TEST_F(NaturalModes, AreNoMoreThanThereAre) {
   std::string scene = body("hull", 20000, {0, 0, 1}, {2e4, 5e4, 6e4});
   for (int k = 0; k < 8; ++k) {
     const double x = 1.85 - 1.3 * (k / 2), y = k % 2 ? -1.1 : 1.1;
-    const auto named = [&](const char* text) {
-      return fmt::format(fmt::runtime(text), fmt::arg("n", k), fmt::arg("x", x), fmt::arg("p", x + 0.45), fmt::arg("y", y));
-    };
-    scene +=
-        body(fmt::format("arm{}", k), 104, {x + 0.2, y, 0.57}, {1, 8, 8}) + body(fmt::format("wheel{}", k), 152, {x, y, 0.42}, {8, 13, 8}) +
-        named(
-            "[[joint]]\nkind = \"revolute\"\nname = \"pivot{n}\"\na = \"hull\"\nb = \"arm{n}\"\nat = [{p}, {y}, 0.72]\naxis = [0, 1, 0]\n"
-            "[[joint]]\nkind = \"revolute\"\nname = \"axle{n}\"\na = \"arm{n}\"\nb = \"wheel{n}\"\nat = [{x}, {y}, 0.42]\naxis = [0, 1, "
-            "0]\n"
-            "[[spring]]\nkind = \"torsion\"\nname = \"bar{n}\"\na = \"hull\"\nb = \"arm{n}\"\naxis = [0, 1, 0]\nstiffness = 6e4\ndamping = "
-            "3200\n"
-            "[[spring]]\nkind = \"torsion\"\nname = \"brake{n}\"\na = \"arm{n}\"\nb = \"wheel{n}\"\naxis = [0, 1, 0]\nstiffness = "
-            "1e6\ndamping = 2000\n"
-            "[[spring]]\nkind = \"bushing\"\nname = \"tyre{n}\"\nb = \"wheel{n}\"\nat = [{x}, {y}, 0]\nstiffness = [1e6, 8e5, "
-            "1.5e6]\ndamping = [1e4, 1e4, 1.2e4]\n");
+    const std::string arm = fmt::format("arm{}", k), wheel = fmt::format("wheel{}", k);
+    scene += body(arm, 104, {x + 0.2, y, 0.57}, {1, 8, 8}) + body(wheel, 152, {x, y, 0.42}, {8, 13, 8}) +
+             pin("pivot of " + arm, "hull", arm, {x + 0.45, y, 0.72}) + pin("axle of " + wheel, arm, wheel, {x, y, 0.42}) +
+             spring("torsion", "bar of " + arm, "hull", arm, "axis = [0, 1, 0]\nstiffness = 6e4\ndamping = 3200") +
+             spring("torsion", "brake of " + wheel, arm, wheel, "axis = [0, 1, 0]\nstiffness = 1e6\ndamping = 2000") +
+             bushing("tyre of " + wheel, wheel, {x, y, 0}, {1e6, 8e5, 1.5e6}, "damping = [1e4, 1e4, 1.2e4]");
   }
   for (const int wanted : {40, 100}) {
     const auto all = modes(scene, wanted);

@@ -10,7 +10,16 @@
 namespace hilo::test {
 
 constexpr double pi = std::numbers::pi;
-inline const std::string steel = "[material.m]\nE = 2e11\nnu = 0\ndensity = 8000\n[region.\"*\"]\nmaterial = \"m\"\n";
+inline const std::string steel = solid(2e11, 0, 8000);
+/// A spring of three stiffnesses at a point.
+inline std::string bushing(const std::string& name, const std::string& on, const Vec3& at, const Vec3& stiffness,
+                           const std::string& more = "") {
+  return spring("bushing", name, "ground", on, "at = " + list(at) + "\nstiffness = " + list(stiffness) + "\n" + more);
+}
+/// A revolute about y.
+inline std::string pin(const std::string& name, const std::string& a, const std::string& b, const Vec3& at) {
+  return axial("revolute", name, a, b, at, Vec3::UnitY());
+}
 
 /// A scene of the test, and what modes it has.
 class NaturalModes : public ScenePlace {
@@ -27,13 +36,7 @@ class NaturalModes : public ScenePlace {
   Eigen::VectorXd frequencies(const std::string& scene, int wanted) { return modes(scene, wanted).col(0); }
 };
 
-inline Mesh beam(const Vec3& size, int n) {
-  BlockOptions o;
-  o.shape = Shape::hex20r;
-  o.n[0] = n;
-  o.high = size;
-  return block_mesh(o);
-}
+inline Mesh beam(const Vec3& size, int n) { return block_mesh({.shape = Shape::hex20r, .n = {n, 1, 1}, .high = size}); }
 
 /// Timoshenko's beam by its two bending branches would be more than a slender one needs: corrections of order (r/L)^2 are below 2e-4 here.
 inline const double r_z = 0.01 / std::sqrt(12), r_y = 0.015 / std::sqrt(12),

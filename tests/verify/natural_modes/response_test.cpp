@@ -3,7 +3,6 @@
 #include <complex>
 #include <tuple>
 
-#include "succeeded.hpp"
 #include "verify/natural_modes/natural_modes.hpp"
 
 namespace hilo::test::response_test {
@@ -13,12 +12,11 @@ namespace {
 TEST_F(NaturalModes, GiveTheResponseToAHarmonicForce) {
   const double m = 1000, J = 1500, kf = 3e4, kr = 4e4, a = 1.2, b = 1.6;
   const auto corner = [](const std::string& name, double x, double k) {
-    return "[[spring]]\nkind = \"bushing\"\nname = \"" + name + "\"\nb = \"car\"\nat = [" + std::to_string(x) +
-           ", 0, 0]\nstiffness = [0, 0, " + std::to_string(k) + "]\ndamping = [0, 0, " + std::to_string(0.01 * k) + "]\n" +
-           "[[probe]]\nname = \"at_" + name + "\"\non = \"car\"\nat = [" + std::to_string(x) + ", 0, 0]\n";
+    return bushing(name, "car", {x, 0, 0}, {0, 0, k}, "damping = " + list({0, 0, 0.01 * k})) +
+           probe("at_" + name, "car", "at = " + list({x, 0, 0}));
   };
   modes(body("car", m, {0, 0, 0}, {J, J, J}) + corner("front", a, kf) + corner("rear", -b, kr) +
-            "[[joint]]\nkind = \"planar\"\nname = \"road\"\nb = \"car\"\nat = [0, 0, 0]\naxis = [0, 1, 0]\n",
+            axial("planar", "road", "ground", "car", Vec3::Zero(), Vec3::UnitY()),
         3);
   const Ran response =
       succeeded(work.run("hilo-post response run.h5 --force at_front.z --at at_front.z --at at_rear.z --from 0.2 --to 5 --points 50"));
@@ -46,11 +44,9 @@ TEST_F(NaturalModes, GiveTheResponseToAHarmonicForce) {
 
 TEST_F(NaturalModes, GiveTheTransmissibilityOfAMassOnASpring) {
   const double m = 3, k = 1200, c = 20, w0 = std::sqrt(k / m), zeta = c / (2 * std::sqrt(k * m));
-  modes(body("mass", m, {0, 0, 0}, {1, 1, 1}) +
-            "[[joint]]\nkind = \"prismatic\"\nname = \"guide\"\nb = \"mass\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n" +
-            "[[spring]]\nkind = \"bushing\"\nname = \"s\"\nb = \"mass\"\nat = [0, 0, 0]\nstiffness = [0, 0, 1200]\ndamping = [0, 0, 20]\n"
-            "[[probe]]\nname = \"top\"\non = \"mass\"\nat = [0, 0, 0]\n"
-            "[[load]]\nkind = \"force\"\nname = \"push\"\non = \"mass\"\nforce = [4, 0, 6]\n",
+  modes(body("mass", m, {0, 0, 0}, {1, 1, 1}) + axial("prismatic", "guide", "ground", "mass", Vec3::Zero(), Vec3::UnitZ()) +
+            bushing("s", "mass", Vec3::Zero(), {0, 0, 1200}, "damping = [0, 0, 20]") + probe("top", "mass", "at = [0, 0, 0]") +
+            force("push", "mass", {4, 0, 6}),
         3);
   const std::vector<Answer> pushed = answers(work.run("hilo-post response run.h5 --loads --at top.z --from 0.3 --to 30 --points 40"));
   EXPECT_EQ(pushed.size(), 40U);
@@ -75,7 +71,7 @@ TEST_F(NaturalModes, GiveTheTransmissibilityOfAMassOnASpring) {
 // The tip of a cantilever whose wall swings: (cos bL + cosh bL)/(1 + cos bL cosh bL), by all that stands still and by the motion's name.
 TEST_F(NaturalModes, GiveTheSwingOfACantileverOnItsWall) {
   use(beam({1, 0.015, 0.01}, 30));
-  modes(steel + "[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n[[probe]]\nname = \"tip\"\non = \"xmax\"\n", 20);
+  modes(steel + motion("fixed", "wall", "xmin", "") + probe("tip", "xmax"), 20);
   for (const std::string base : {"z", "wall.z"}) {
     int n = 0;
     for (const Answer& a :
@@ -92,15 +88,9 @@ TEST_F(NaturalModes, GiveTheSwingOfACantileverOnItsWall) {
 
 // A rod between two ends of which one swings along it: the middle by 1/(2 cos(k L/2)); of both it is 1/cos(k L/2).
 TEST_F(NaturalModes, GiveTheSwingOfARodOnOneOfItsEnds) {
-  BlockOptions o;
-  o.n[0] = 10;
-  o.high = Vec3(1, 0.05, 0.05);
-  use(block_mesh(o));
-  modes(
-      steel +
-          "[[motion]]\nkind = \"fixed\"\nname = \"left\"\non = \"xmin\"\n[[motion]]\nkind = \"fixed\"\nname = \"right\"\non = \"xmax\"\n" +
-          "[[probe]]\nname = \"middle\"\non = \"block\"\nat = [0.5, 0, 0]\n",
-      108);
+  use(block_mesh({.n = {10, 1, 1}, .high = {1, 0.05, 0.05}}));
+  modes(steel + motion("fixed", "left", "xmin", "") + motion("fixed", "right", "xmax", "") + probe("middle", "block", "at = [0.5, 0, 0]"),
+        108);
   const std::string command = "hilo-post response run.h5 --of acceleration --at middle.x --from 10 --to 1500 --points 20 ";
   for (const auto& [base, ends] : {std::pair{"--base left.x", 1}, std::pair{"--base left.x --base right.x", 2}, std::pair{"--base x", 2}})
     for (const Answer& a : answers(work.run(command + base))) {
@@ -111,14 +101,10 @@ TEST_F(NaturalModes, GiveTheSwingOfARodOnOneOfItsEnds) {
 
 // Mass-proportional damping is a drag against space, which a base that swings pulls its parts through.
 TEST_F(NaturalModes, OnABaseThatSwingsFeelTheDragOfSpace) {
-  BlockOptions o;
-  use(block_mesh(o));
+  use(block_mesh({}));
   const double E = 1e6, moves = 1000, shared = 500,
                alpha = 6;  // one cell that is stretched: its tip has a third of 3000 kg, a sixth with the wall
-  modes(
-      "[material.m]\nE = 1e6\nnu = 0\ndensity = 3000\n[region.block]\nmaterial = \"m\"\nmass_damping = 6\n[[motion]]\nkind = "
-      "\"fixed\"\nname = \"wall\"\non = \"xmin\"\n[[probe]]\nname = \"tip\"\non = \"xmax\"\n",
-      10);
+  modes(solid(E, 0, 3000, "block", "", "mass_damping = 6") + motion("fixed", "wall", "xmin", "") + probe("tip", "xmax"), 10);
   for (const std::string base : {"x", "wall.x"})
     for (const Answer& a :
          answers(work.run("hilo-post response run.h5 --of acceleration --at tip.x --from 2 --to 10 --points 9 --base " + base))) {

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // output.envelope: the largest values over all steps, whatever is put out, on any number of ranks, through a restart, and against a closed
 // form.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <fstream>
-
-#include "succeeded.hpp"
 #include "verify/everything/half_rigid.hpp"
 
 namespace hilo::test::envelope_test {
@@ -28,9 +22,6 @@ std::pair<Array, Array> largest(const Results& r, const std::string& name) {
   return {most, t};
 }
 
-struct Everything : Case {
-  Everything() : Case("everything") { use(half_rigid(), {Fidelity::rigid, Fidelity::nonlinear}); }
-};
 // steps of 2^-10 s, so that times have no round-off
 const std::string run = "--set output.envelope=true --set time.step=0.0009765625 --set time.end=0.0625 ";
 
@@ -55,8 +46,7 @@ TEST(Envelope, IsTheSameOnRanks) {
   const Everything c;
   const Results one = c.solved(run + "--set solver.tolerance=1e-12");
   for (const int ranks : {2, 3}) {
-    succeeded(mpirun(ranks, "hilo-solve --quiet '" + c.source("scene.toml") + "' tags.h5 -o ranks.h5 --set solver.tolerance=1e-12 " + run,
-                     c.path()));
+    succeeded(mpirun(ranks, "hilo-solve --quiet scene.toml tags.h5 -o ranks.h5 --set solver.tolerance=1e-12 " + run, c.path()));
     const Results other(c / "ranks.h5");
     for (const char* name : {"displacement", "acceleration", "von_mises"}) {
       const Array a = envelope(one, name), b = envelope(other, name);
@@ -69,7 +59,7 @@ TEST(Envelope, IsTheSameOnRanks) {
 TEST(Envelope, GoesOnFromACheckpointBitByBit) {
   for (const int ranks : {1, 2}) {
     const Everything c;
-    const std::string solve = "hilo-solve --quiet '" + c.source("scene.toml") + "' tags.h5 --checkpoint 15steps " + run;
+    const std::string solve = "hilo-solve --quiet scene.toml tags.h5 --checkpoint 15steps " + run;
     ASSERT_EQ(mpirun(ranks, solve + "-o whole.h5", c.path()).exit, 0);
     ASSERT_EQ(mpirun(ranks, solve + "--set time.end=0.03125 -o run.h5", c.path()).exit, 0);
     const Array half = envelope(Results(c / "run.h5"), "displacement");
@@ -87,47 +77,20 @@ TEST(Envelope, GoesOnFromACheckpointBitByBit) {
 
 TEST(Envelope, CannotBeAskedForLater) {
   const Everything c;
-  ASSERT_EQ(c.run("hilo-solve --quiet '" + c.source("scene.toml") + "' tags.h5 --set time.end=0.01 --checkpoint 5steps").exit, 0);
-  const Ran ran = c.run("hilo-solve --quiet --restart run.h5 --accept --set output.envelope=true --set time.end=0.02");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("the run that was kept had none"), std::string::npos) << ran.err;
+  ASSERT_EQ(c.run("hilo-solve --quiet scene.toml tags.h5 --set time.end=0.01 --checkpoint 5steps").exit, 0);
+  expect_end(c.run("hilo-solve --quiet --restart run.h5 --accept --set output.envelope=true --set time.end=0.02"), 2,
+             "the run that was kept had none");
 }
 
 // A rigid block turns about z at w: a point at r from the axis comes 2 r away after half a turn, under the acceleration r w^2.
 TEST(Envelope, OfASpinningBlockIsTheDiameter) {
-  Case c("everything");
   const Mesh mesh = block_mesh({});
+  SceneCase c(solid(1e9, 0.3, 1000) + axial("revolute", "axle", "ground", "block", {0, 0, 0}, {0, 0, 1}) +
+              initial("block", "spin = [0, 0, 10]\nabout = [0, 0, 0]") + in_time(0.5, 1e-3) +
+              "[output]\ninterval = 0.2\nenvelope = true\n");
   c.use(mesh, {Fidelity::rigid});
   const double w = 10, half_turn = M_PI / w;
-  std::ofstream(c / "spin.toml") << R"(
-[material.m]
-E = 1e9
-nu = 0.3
-density = 1000
-[region."*"]
-material = "m"
-[[joint]]
-kind = "revolute"
-name = "axle"
-a = "ground"
-b = ")" << mesh.region_name.front()
-                                 << R"("
-at = [0, 0, 0]
-axis = [0, 0, 1]
-[[initial]]
-on = [")" << mesh.region_name.front()
-                                 << R"("]
-spin = [0, 0, 10]
-about = [0, 0, 0]
-[time]
-end = 0.5
-step = 1e-3
-[output]
-interval = 0.2
-envelope = true
-)";
-  succeeded(c.run("hilo-solve --quiet spin.toml tags.h5"));
-  const Results r(c / "run.h5");
+  const Results r = c.solved();
   const Array u = envelope(r, "displacement"), a = envelope(r, "acceleration"), t = envelope(r, "displacement_time");
   for (size_t i = 0; i < mesh.X.size(); ++i) {
     const double radius = mesh.X[i].head<2>().norm();
@@ -138,9 +101,8 @@ envelope = true
       EXPECT_NEAR(t[k], half_turn, 0.6e-3);
     }
   }
-  const Ran modes = c.run("hilo-solve --quiet spin.toml tags.h5 --set 'time.analysis=\"modes\"'");
-  EXPECT_EQ(modes.exit, 2);
-  EXPECT_NE(modes.err.find("an analysis of modes or buckling has no steps"), std::string::npos) << modes.err;
+  expect_end(c.run("hilo-solve --quiet scene.toml tags.h5 --set 'time.analysis=\"modes\"'"), 2,
+             "an analysis of modes or buckling has no steps");
 }
 
 TEST(Envelope, IsWhatPeakTells) {

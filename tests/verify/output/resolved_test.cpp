@@ -2,7 +2,6 @@
 // What cells, modes and steps resolve: the told frequency against errors of frequencies known in closed form, and the marks on raw peaks.
 #include <numbers>
 
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::resolved_test {
@@ -15,8 +14,7 @@ constexpr double pi = std::numbers::pi;
 TEST(Resolved, CellsRunShearWavesToOnePercentUpToTheToldFrequency) {
   for (const auto& [shape, n] : {std::pair{Shape::hex8, 40}, {Shape::hex20, 10}}) {
     const Workplace w;
-    BlockOptions o;
-    o.shape = shape, o.n[0] = n, o.high = {4, 0.1, 0.1};
+    const BlockOptions o{.shape = shape, .n = {n, 1, 1}, .high = {4, 0.1, 0.1}};
     write_mesh(w / "mesh.h5", block_mesh(o), {"test"});
     w.write(
         "scene.toml",
@@ -41,10 +39,8 @@ TEST(Resolved, CellsRunShearWavesToOnePercentUpToTheToldFrequency) {
 // A linear region resolves no more than its modes hold; a rigid one is not asked.
 TEST(Resolved, ModesAndRigidRegionsCount) {
   const Workplace w;
-  BlockOptions o;
-  o.n[0] = 20, o.high = {2, 0.1, 0.1};
-  o.regions = {"bar", "grip"};
-  o.region_of = [](const Vec3& x) { return x[0] > 1.5; };
+  const BlockOptions o{
+      .n = {20, 1, 1}, .high = {2, 0.1, 0.1}, .regions = {"bar", "grip"}, .region_of = [](const Vec3& x) { return x[0] > 1.5; }};
   write_mesh(w / "mesh.h5", block_mesh(o), {"test"});
   write_tags(w / "tags.h5", w / "mesh.h5", {Fidelity::linear, Fidelity::rigid}, {"test"});
   w.write("scene.toml",

@@ -3,12 +3,9 @@
 // some run.  docs/format.md is printed from the same table.
 #include "model/schema.hpp"
 
-#include <fstream>
-#include <set>
-
-#include "succeeded.hpp"
 #include "verify/contact/collision.hpp"
 #include "verify/everything/half_rigid.hpp"
+#include "verify/linear_region/bars.hpp"
 
 namespace hilo::test::schema_test {
 namespace {
@@ -50,9 +47,8 @@ void hold_against_schema(const Store& file, std::set<std::string>& met) {
 }
 
 TEST(ResultsSchema, HoldsEveryArrayAndEveryArrayIsWritten) {
-  Case c("everything");
-  c.use(half_rigid(), {Fidelity::rigid, Fidelity::nonlinear});
-  std::ofstream(c / "more.toml") << text_of(c.source("scene.toml")) << R"(
+  const Everything c;
+  std::ofstream(c / "more.toml") << scene_of_everything() << R"(
 [section.rod]
 kind = "circle"
 diameter = 0.02
@@ -115,15 +111,15 @@ on = "zmax"
 )";
   std::set<std::string> met;
   for (const char* options : {"", "--set output.precision=single", "--set output.nodes=skin", "--set output.envelope=true",
-                              "--set 'material.soft.kind=\"j2\"' --set material.soft.yield=1e3"}) {
+                              "--set 'material.of_*.kind=\"j2\"' --set 'material.of_*.yield=1e3'"}) {
     succeeded(c.run(std::string("hilo-solve --quiet more.toml tags.h5 --set time.end=0.003 --set output.interval=0.001 ") + options));
     hold_against_schema(Store::open(c / "run.h5"), met);
   }
-  Case linear("linear_region");
+  SceneCase linear(soft_bars::in_flight);
   linear.use(block_mesh({}), {Fidelity::linear});
-  hold_against_schema(linear.solved("--set time.end=0.0158 --set material.soft.E=1e9", "run.h5", "free").file(), met);
-  hold_against_schema(linear.solved("--set 'time.analysis=\"modes\"'", "run.h5", "cantilever").file(), met);
-  hold_against_schema(linear.solved("--set 'time.analysis=\"path\"'", "run.h5", "cantilever").file(), met);
+  hold_against_schema(linear.solved("--set time.end=0.0158 --set material.soft.E=1e9").file(), met);
+  linear.write("scene.toml", soft_bars::sagging);
+  for (const std::string analysis : {"modes", "path"}) hold_against_schema(linear.solved("--set time.analysis=" + analysis).file(), met);
   std::ofstream(linear / "rod.toml")
       << "material.m = {E = 1e6, nu = 0.3, density = 1000}\nsection.s = {kind = \"circle\", diameter = 0.01}\n"
          "beam.b = {points = [[0, 0, 0], [0, 0, 1]], cells = [2], section = \"s\", material = \"m\", a = \"ground\"}\n"

@@ -2,7 +2,6 @@
 // Three equal parallel cranks and a coupler without gravity.  Kinetic energy depends on the rate alone, so the cranks turn at 3 rad/s
 // without end.  The coupler, 2 kg on a circle of 1 m, is held by 2 x 9 = 18 N along the cranks, in equal shares by the symmetry of
 // minimum-norm reactions.
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::parallelogram_test {

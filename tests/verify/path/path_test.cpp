@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Paths of equilibrium past limits of load and of displacement: bars whose path is known in closed form, and Lee's frame.
-#include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/lee_frame.hpp"
 
 namespace hilo::test::path_test {

@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [set.NAME]: sets by place are those that the mesh would have; and what they make possible, every region at every fidelity.
-#include <fmt/format.h>
-
-#include <fstream>
-
 #include "model/scene_sets.hpp"
-#include "succeeded.hpp"
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::placed_sets_test {
 namespace {
 
-Mesh beam() {
-  BlockOptions o;
-  o.n[0] = 5, o.n[1] = 2, o.n[2] = 2;
-  o.high = Vec3(1, 0.2, 0.2);
-  return block_mesh(o);
-}
+Mesh beam() { return block_mesh({.n = {5, 2, 2}, .high = {1, 0.2, 0.2}}); }
 
 size_t count(const Mesh& m, const std::string& name) { return m.node_sets.contains(name) ? m.node_sets.at(name).size() : 0; }
 
@@ -27,11 +18,9 @@ Mesh with_set(Mesh m, const std::string& keys) {
 
 // A quarter of a pipe of radii 1 and 2, 3 long: 4 x 8 x 3 cells.
 Mesh pipe() {
-  BlockOptions o;
-  o.n[0] = 4, o.n[1] = 8, o.n[2] = 3;
-  o.low = Vec3(1, 0, 0), o.high = Vec3(2, 1, 3);
-  o.map = [](const Vec3& x) { return Vec3(x[0] * std::cos(1.5 * x[1]), x[0] * std::sin(1.5 * x[1]), x[2]); };
-  return block_mesh(o);
+  return block_mesh({.n = {4, 8, 3}, .low = {1, 0, 0}, .high = {2, 1, 3}, .map = [](const Vec3& x) {
+                       return Vec3(x[0] * std::cos(1.5 * x[1]), x[0] * std::sin(1.5 * x[1]), x[2]);
+                     }});
 }
 
 TEST(PlacedSets, NearIsTheSmoothFaceThatAPointLiesOn) {
@@ -76,27 +65,33 @@ TEST(PlacedSets, ThatCannotBeAreRefusedWithTheirPlace) {
   expect("kind = \"cone\"\nat = [1, 0, 0]", "unknown kind \"cone\"");
 }
 
+/// Held at one end by a joint, pushed and pressed at others.
+std::string pushed_beam(const std::string& root, const std::string& tip, const std::string& top) {
+  return "gravity = [0, 0, -9.81]\n" + solid(1e7, 0.3, 1000) + axial("revolute", "hinge", "ground", root, {0, 0.1, 0.1}, {0, 1, 0}) +
+         spring("axial", "stay", "ground", tip, "at_a = [1, 0.1, 1]\nat_b = [1, 0.1, 0.1]\nstiffness = 500") +
+         load("pressure", "air", top, "pressure = 200") + probe("tip", tip) + in_time(0.02, 1e-3) +
+         fields("\"displacement\", \"von_mises\"");
+}
+const std::string by_place = pushed_beam("root", "tip", "top") + R"([set]
+root = {kind = "plane", at = [0, 0.1, 0.1], axis = [1, 0, 0]}
+tip = {kind = "box", low = [0.99, -1, -1], high = [1.01, 1, 1]}
+top = {kind = "plane", of = ["bl*"], at = [0.5, 0.1, 0.2], axis = [0, 0, 2]}
+)";
+
 // The same run by sets of the mesh.
 TEST(PlacedSets, GiveTheRunOfSetsOfTheMeshBitByBitAndOnRanks) {
   for (const Fidelity fidelity : {Fidelity::nonlinear, Fidelity::linear}) {
-    Case c("placed_sets");
+    SceneCase c(by_place);
     c.use(beam(), {fidelity});
     const Results placed = c.solved("", "placed.h5");
-    std::string text = text_of(c.source("scene.toml"));
-    for (const auto& [name, of_mesh] : {std::pair("root", "xmin"), {"tip", "xmax"}, {"top", "zmax"}})
-      for (const std::string key : {"b", "on"})
-        if (const auto at = text.find(key + " = \"" + name + "\""); at != std::string::npos)
-          text.replace(at, key.size() + 5 + std::string(name).size(), key + " = \"" + of_mesh + "\"");
-    for (const char* end : {"b = \"root\"", "b = \"tip\"", "on = \"tip\"", "on = \"top\""}) ASSERT_EQ(text.find(end), text.npos) << end;
-    std::ofstream(c / "mesh.toml") << text;
-    ASSERT_EQ(c.run("hilo-solve --quiet mesh.toml tags.h5 -o mesh_sets.h5").exit, 0);
-    const Results named = c.results("mesh_sets.h5");
+    c.write("mesh.toml", pushed_beam("xmin", "xmax", "zmax"));
+    const Results named = c.solved("", "mesh_sets.h5", "mesh");
     for (const std::string name : {"energy", "joint/hinge", "spring/stay"}) EXPECT_EQ(placed.history(name), named.history(name)) << name;
     EXPECT_EQ(placed.field("displacement"), named.field("displacement"));
     EXPECT_GT(placed.history("energy").col(1).maxCoeff(), 0);
     for (const int ranks : {2, 3}) {
-      ASSERT_EQ(c.run(fmt::format("hilo-part --quiet tags.h5 {} -n {} -o parts.h5", c.source("scene.toml"), ranks)).exit, 0);
-      succeeded(mpirun(ranks, "hilo-solve --quiet " + c.source("scene.toml") + " parts.h5 -o ranks.h5", c.path()));
+      ASSERT_EQ(c.run(fmt::format("hilo-part --quiet tags.h5 scene.toml -n {} -o parts.h5", ranks)).exit, 0);
+      succeeded(mpirun(ranks, "hilo-solve --quiet scene.toml parts.h5 -o ranks.h5", c.path()));
       const auto apart = (c.results("ranks.h5").history("probe/tip") - placed.history("probe/tip")).leftCols(3).cwiseAbs().maxCoeff();
       EXPECT_LT(apart, 1e-9) << ranks << " ranks";
     }
@@ -104,24 +99,18 @@ TEST(PlacedSets, GiveTheRunOfSetsOfTheMeshBitByBitAndOnRanks) {
 }
 
 TEST(PlacedSets, OfOneNodeAreRefusedOnRanks) {
-  Case c("placed_sets");
+  SceneCase c(by_place + "dot = {kind = \"ball\", at = [0, 0, 0], radius = 0.01}\n" + probe("dot"));
   c.use(beam(), {Fidelity::nonlinear});
-  std::ofstream(c / "one.toml") << text_of(c.source("scene.toml"))
-                                << "\n[set.dot]\nkind = \"ball\"\nat = [0, 0, 0]\nradius = 0.01\n[[probe]]\nname = \"dot\"\non = \"dot\"\n";
-  EXPECT_EQ(c.run("hilo-solve --quiet one.toml tags.h5 -o one.h5").exit, 0);
-  const Ran ran = mpirun(2, "hilo-solve --quiet one.toml tags.h5 -o two.h5", c.path());
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("set \"dot\": a single node"), std::string::npos) << ran.err;
+  EXPECT_EQ(c.run("hilo-solve --quiet scene.toml tags.h5 -o one.h5").exit, 0);
+  expect_end(mpirun(2, "hilo-solve --quiet scene.toml tags.h5 -o two.h5", c.path()), 2, "set \"dot\": a single node");
 }
 
 /// Three blocks in a row, the middle one of cells.
 Mesh row_of_blocks(int across = 2) {
-  BlockOptions o;
-  o.n[0] = 6, o.n[1] = o.n[2] = across;
-  o.high = Vec3(0.6, 0.2, 0.2);
-  o.regions = {"left", "middle", "right"};
-  o.region_of = [](const Vec3& x) { return x[0] < 0.2 ? 0 : x[0] < 0.4 ? 1 : 2; };
-  return block_mesh(o);
+  return block_mesh(
+      {.n = {6, across, across}, .high = {0.6, 0.2, 0.2}, .regions = {"left", "middle", "right"}, .region_of = [](const Vec3& x) {
+         return x[0] < 0.2 ? 0 : x[0] < 0.4 ? 1 : 2;
+       }});
 }
 
 const std::string row_scene = R"(gravity = [0, 0, -9.81]
@@ -145,8 +134,7 @@ TEST(PlacedSets, ThatAJointHoldsMakeRigidRegionsOneBodyAndSaySo) {
   for (const int ranks : {1, 2}) {
     Case c("placed_sets");
     const Ran ran = succeeded(row_run(c, hinge, {Fidelity::rigid, Fidelity::nonlinear, Fidelity::rigid}, ranks));
-    EXPECT_NE(ran.err.find("\"ends\" has nodes of the rigid regions \"left\" and \"right\", which move as one body"), std::string::npos)
-        << ran.err;
+    expect_words(ran.err, "\"ends\" has nodes of the rigid regions \"left\" and \"right\", which move as one body");
     EXPECT_EQ(c.reported("bodies"), 1);
   }
 }

@@ -4,7 +4,6 @@
 // Published: 21.42 to 21.43 mm long in the end, the foot 7.22 mm in radius on cells of 0.05 mm (Foulk et al. 2021).  Nodes of the foot stop
 // at once and take their kinetic energy with them, 4 % of it on the coarse mesh, 1.1 % on the fine one: the foot comes out too small by as
 // much.
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::taylor_test {

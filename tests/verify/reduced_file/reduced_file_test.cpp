@@ -1,39 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-reduce: modes on file serve as if they were found anew, or are refused by name.
-#include <fmt/format.h>
-
-#include "succeeded.hpp"
-#include "verify/verify.hpp"
+#include "verify/linear_region/bars.hpp"
 
 namespace hilo::test::reduced_file_test {
 namespace {
 
-Mesh bars(int n) {
-  BlockOptions o;
-  o.n[0] = n;
-  o.low = Vec3(0, 0, 0), o.high = Vec3(1, 0.1, 0.1);
-  Mesh left = block_mesh(o);
-  left.region_name = {"left"};
-  Mesh out = left;
-  out.facet_sets.clear();
-  for (const auto& [name, set] : left.facet_sets) out.facet_sets["left_" + name] = set;
-  const std::int64_t nodes = left.n_nodes(), cells = left.n_cells();
-  out.region_name.push_back("right"), out.region_data.push_back(left.region_data[0]);
-  for (std::int64_t i = 0; i < nodes; ++i) out.X.push_back(left.X[i] + Vec3(1, 0, 0)), out.node_id.push_back(nodes + i);
-  for (std::int64_t e = 0; e < cells; ++e) {
-    std::vector<std::int64_t> list;
-    for (const std::int64_t i : left.cell(e)) list.push_back(nodes + i);
-    out.add_cell(static_cast<Shape>(left.shape[e]), list, 1, cells + e);
-  }
-  for (const auto& [name, set] : left.facet_sets)
-    for (const Facet& f : set) out.facet_sets["right_" + name].push_back({cells + f.cell, f.facet});
-  return out;
-}
+using namespace soft_bars;
 
 class ReducedFile : public testing::Test {
  protected:
   ReducedFile() {
-    c.use(bars(5), {Fidelity::linear, Fidelity::linear});
+    c.use(two_bars(5), {Fidelity::linear, Fidelity::linear});
     const Ran ran = reduce();
     EXPECT_EQ(ran.exit, 0) << ran.err;
   }
@@ -48,7 +25,7 @@ class ReducedFile : public testing::Test {
   /// Frequencies to 1e-8, and modes that span the same.
   void expect_same_modes(const std::string& other) const {
     const Store truth = Store::open(c / "reduced.h5"), file = Store::open(c / other);
-    for (const std::string region : {"/reduced/left/", "/reduced/right/"}) {
+    for (const std::string region : {"/reduced/left_block/", "/reduced/right_block/"}) {
       const auto a = truth.read<double>(region + "omega2"), b = file.read<double>(region + "omega2");
       ASSERT_EQ(a.size(), b.size());
       for (size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(b[k] / a[k], 1, 2e-8) << other << ", " << region << k;
@@ -64,12 +41,12 @@ class ReducedFile : public testing::Test {
       EXPECT_LT(left.norm(), 1e-6 * B.norm()) << other;
     }
   }
-  Case c{"reduced_file"};
+  SceneCase c{soft + hinge + force("push", "right_xmax", {0, 0, 3}) + thrown + in_time(0.08, 0.004)};
 };
 
 TEST_F(ReducedFile, GivesTheRunThatFindsThemBitByBit) {
   const auto found = c.solved("", "found.h5"), taken = c.solved("--modes reduced.h5", "taken.h5");
-  for (const std::string name : {"energy", "momentum", "joint/hinge", "modes/left", "modes/right"})
+  for (const std::string name : {"energy", "momentum", "joint/hinge", "modes/left_block", "modes/right_block"})
     EXPECT_EQ(found.history(name), taken.history(name)) << name;
   EXPECT_EQ(found.field("displacement"), taken.field("displacement"));
   EXPECT_GT(taken.history("energy").col(1).maxCoeff(), 0);
@@ -79,18 +56,18 @@ TEST_F(ReducedFile, ServesOnRanks) {
   ASSERT_EQ(c.run("hilo-part --quiet tags.h5 " + c.source("scene.toml") + " -n 3 -o parts.h5").exit, 0);
   succeeded(mpirun(3, "hilo-solve --quiet " + c.source("scene.toml") + " parts.h5 --modes reduced.h5 -o ranks.h5", c.path()));
   const auto ranks = c.results("ranks.h5"), serial = c.solved("--modes reduced.h5", "serial.h5");
-  EXPECT_LT((ranks.history("modes/left") - serial.history("modes/left")).cwiseAbs().maxCoeff(),
-            1e-7 * serial.history("modes/left").cwiseAbs().maxCoeff());
+  EXPECT_LT((ranks.history("modes/left_block") - serial.history("modes/left_block")).cwiseAbs().maxCoeff(),
+            1e-7 * serial.history("modes/left_block").cwiseAbs().maxCoeff());
 }
 
 // A run.h5 of the modes, to be drawn: each is the region displaced by its shape on file.
 TEST_F(ReducedFile, DrawsItsModes) {
   const Ran ran = reduce("-o again.h5 --shapes shapes.h5");
   ASSERT_EQ(ran.exit, 0) << ran.err;
-  EXPECT_NE(ran.out.find("left, mode 1: "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("left_block, mode 1: "), std::string::npos) << ran.out;
   const Results shown = c.results("shapes.h5");
   const Store file = Store::open(c / "again.h5");
-  const auto omega2 = file.read<double>("/reduced/left/omega2"), shapes = file.read<double>("/reduced/left/shapes");
+  const auto omega2 = file.read<double>("/reduced/left_block/omega2"), shapes = file.read<double>("/reduced/left_block/shapes");
   const auto m = static_cast<Eigen::Index>(omega2.size());
   const Eigen::MatrixXd on_file = Eigen::Map<const Eigen::MatrixXd>(shapes.data(), m, static_cast<Eigen::Index>(shapes.size()) / m);
   const auto steps = shown.steps();
@@ -108,7 +85,7 @@ TEST_F(ReducedFile, DrawsItsModes) {
 
 TEST_F(ReducedFile, IsKeptWhereNothingThatItDependsOnChanged) {
   const std::string before = text_of(c / "reduced.h5");
-  EXPECT_NE(reduce("--set time.end=7 --set 'gravity=[0,0,-9]'").out.find("modes, as before\nright"), std::string::npos);
+  EXPECT_NE(reduce("--set time.end=7 --set 'gravity=[0,0,-9]'").out.find("modes, as before\nright_block"), std::string::npos);
   const Ran other = reduce("--set material.soft.E=2e7");
   EXPECT_EQ(other.exit, 0);
   EXPECT_EQ(other.out.find("as before"), std::string::npos) << other.out;
@@ -119,8 +96,7 @@ TEST_F(ReducedFile, IsKeptWhereNothingThatItDependsOnChanged) {
 /// same.
 TEST_F(ReducedFile, NeedsRoomForAFactorOrSaysHowMuch) {
   const Ran none = reduce("-o none.h5 --memory 0");
-  EXPECT_EQ(none.exit, 4);
-  EXPECT_NE(none.err.find("linear region \"left\": its stiffness has a factor of "), std::string::npos) << none.err;
+  expect_end(none, 4, "linear region \"left_block\": its stiffness has a factor of ");
   EXPECT_NE(none.err.find("--scratch"), std::string::npos) << none.err;
   EXPECT_FALSE(std::filesystem::exists(c / "none.h5"));
   const double size = std::stod(none.err.substr(none.err.find("factor of ") + 10));
@@ -140,8 +116,7 @@ TEST_F(ReducedFile, IsTheSameFromRanks) {
     std::filesystem::remove(c / "ranks.h5");
   }
   const Ran none = mpirun(2, "hilo-reduce " + c.source("scene.toml") + " tags.h5 -o none.h5 --memory 0", c.path());
-  EXPECT_EQ(none.exit, 4);
-  EXPECT_NE(none.err.find("its stiffness has a factor of "), std::string::npos) << none.err;
+  expect_end(none, 4, "its stiffness has a factor of ");
   EXPECT_FALSE(std::filesystem::exists(c / "none.h5"));
 }
 
@@ -156,22 +131,19 @@ TEST_F(ReducedFile, ThatLacksTheInterfaceOfAJointIsRefused) {
   expect_refused("it lacks the interface \"left_ymax\"", "--set joint.hinge.a=left_ymax");
 }
 TEST_F(ReducedFile, OfAnotherMeshIsRefused) {
-  c.use(bars(6), {Fidelity::linear, Fidelity::linear});
+  c.use(two_bars(6), {Fidelity::linear, Fidelity::linear});
   expect_refused("it is of another mesh", "");
 }
 TEST_F(ReducedFile, OfOneRegionIsRefusedForTwo) {
-  c.use(bars(5), {Fidelity::rigid, Fidelity::linear});
+  c.use(two_bars(5), {Fidelity::rigid, Fidelity::linear});
   ASSERT_EQ(reduce().exit, 0);
-  c.use(bars(5), {Fidelity::linear, Fidelity::linear});
+  c.use(two_bars(5), {Fidelity::linear, Fidelity::linear});
   expect_refused("it lacks the region", "");
 }
 TEST_F(ReducedFile, WhoseInterfaceIsHeldIsRefusedWhereItsModesAreFree) {
-  c.write("scene.toml",
-          "[material.soft]\nE = 1e7\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"soft\"\n[time]\nend = 0.1\nstep = 0.004\n");
-  const Ran ran = c.run("hilo-solve scene.toml tags.h5 --modes reduced.h5 -o refused.h5");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("its modes were found with the interface \"left_xmax\" held, and nothing holds it here"), std::string::npos)
-      << ran.err;
+  c.write("scene.toml", soft + in_time(0.1, 0.004));
+  expect_end(c.run("hilo-solve scene.toml tags.h5 --modes reduced.h5 -o refused.h5"), 2,
+             "its modes were found with the interface \"left_xmax\" held, and nothing holds it here");
 }
 
 TEST_F(ReducedFile, ThatIsNoneOrDamagedIsRefused) {
@@ -188,7 +160,7 @@ TEST_F(ReducedFile, TellsTheMassThatVibrationsCarry) {
   const Ran ran = succeeded(c.run("hilo-show --json reduced.h5"));
   EXPECT_NE(ran.out.find("\"interfaces\": \"left_xmax\""), std::string::npos) << ran.out;
   const Store store = Store::open(c / "reduced.h5");
-  const auto held = store.read<double>("/reduced/left/held");
+  const auto held = store.read<double>("/reduced/left_block/held");
   // first two bending modes of a clamped bar carry .613 of its mass [blevins-1979]; the first frequency, .1615 sqrt(E/rho) h/L^2
   EXPECT_NEAR(held[2] + held[3], 0.613, 0.01) << held[0];
   EXPECT_NEAR(held[6] + held[7], 0.613, 0.01);

@@ -2,10 +2,13 @@
 // The mass of a rigid region is collapsed from its cells, M_r = sum N^T M_e N: mass, centre and inertia against closed forms to 1e-12.
 #include <Eigen/Eigenvalues>
 
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::rigid_region_test {
 namespace {
+
+const std::string steel = solid(2e11, 0.3, 7800) + in_time(0.01, 0.01);
 
 /// Mass, centre, principal moments.
 struct Collapsed {
@@ -28,16 +31,16 @@ INSTANTIATE_TEST_SUITE_P(EveryShape, RigidRegion,
 
 // Truth: for a sheared box x = A s, s in the unit cube about its centre: m = rho det A, second moment = m A A^T/12.
 TEST_P(RigidRegion, OfABoxHasTheMassCentreAndInertiaOfTheBox) {
-  Case c("rigid_region");
+  SceneCase c(steel);
   Mat3 A;
   A << 0.9, 0.2, 0.1, -0.1, 0.5, 0.05, 0.15, -0.05, 0.3;
   const Vec3 at(3, -2, 7);
-  BlockOptions o;
-  o.shape = GetParam();
-  o.n[0] = 3, o.n[1] = 2, o.n[2] = 2;
-  o.low = Vec3::Constant(-0.5), o.high = Vec3::Constant(0.5);
-  o.map = [&](const Vec3& s) { return Vec3(A * s + at); };
-  c.use(block_mesh(o), {Fidelity::rigid});
+  c.use(block_mesh({.shape = GetParam(),
+                    .n = {3, 2, 2},
+                    .low = Vec3::Constant(-0.5),
+                    .high = Vec3::Constant(0.5),
+                    .map = [&](const Vec3& s) { return Vec3(A * s + at); }}),
+        {Fidelity::rigid});
   const Collapsed got = read(c.solved());
   const double m = 7800 * A.determinant();
   EXPECT_NEAR(got.mass, m, 1e-12 * m);
@@ -49,17 +52,12 @@ TEST_P(RigidRegion, OfABoxHasTheMassCentreAndInertiaOfTheBox) {
 // Truth: a tetrahedron's second moment is V/20 (sum x_i x_i^T + (sum x_i)(sum x_i)^T); here of bent blocks of tetrahedra.
 TEST(RigidRegionOfTetrahedra, HasTheMassCentreAndInertiaOfItsCells) {
   for (const Shape shape : {Shape::tet4, Shape::tet10}) {
-    Case c("rigid_region");
-    BlockOptions o;
-    o.shape = shape;
-    o.n[0] = 3, o.n[1] = 2, o.n[2] = 2;
-    o.high = Vec3(1.5, 0.8, 0.6);
-    o.map = [](const Vec3& x) {
-      return Vec3(x + 0.07 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])),
-                                  scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])),
-                                  scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2]))));
-    };
-    const Mesh m = block_mesh(o);
+    SceneCase c(steel);
+    const Mesh m = block_mesh({.shape = shape, .n = {3, 2, 2}, .high = {1.5, 0.8, 0.6}, .map = [](const Vec3& x) {
+                                 return Vec3(x + 0.07 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])),
+                                                             scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])),
+                                                             scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2]))));
+                               }});
     c.use(m, {Fidelity::rigid});
     double volume = 0;
     Vec3 first = Vec3::Zero();
@@ -83,15 +81,12 @@ TEST(RigidRegionOfTetrahedra, HasTheMassCentreAndInertiaOfItsCells) {
 // Truth: bent bricks have the mass of their volume, and their consistent mass matrix, here from 2 x 2 x 2 Gauss points written out, is what
 // collapses.
 TEST(RigidRegionOfBentBricks, IsTheSumOfTheirConsistentMassMatrices) {
-  Case c("rigid_region");
-  BlockOptions o;
-  for (int& n : o.n) n = 2;
-  o.map = [](const Vec3& x) {
-    return Vec3(x + 0.1 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])),
-                               scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])),
-                               scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2]))));
-  };
-  const Mesh m = block_mesh(o);
+  SceneCase c(steel);
+  const Mesh m = block_mesh({.n = {2, 2, 2}, .map = [](const Vec3& x) {
+                               return Vec3(x + 0.1 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])),
+                                                          scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])),
+                                                          scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2]))));
+                             }});
   c.use(m, {Fidelity::rigid});
   double volume = 0, exact_volume = 0;
   Vec3 first = Vec3::Zero();
@@ -123,12 +118,10 @@ TEST(RigidRegionOfBentBricks, IsTheSumOfTheirConsistentMassMatrices) {
 
 // Truth: rigid regions that share nodes are one body, their union; a region apart is another.
 TEST(RigidRegions, ThatTouchAreOneBodyAndThoseApartAreTwo) {
-  Case c("rigid_region");
-  BlockOptions o;
-  o.n[0] = 4;
-  o.high = Vec3(4, 1, 1);
-  o.regions = {"left", "middle", "right"};
-  o.region_of = [](const Vec3& x) { return x[0] < 1 ? 0 : x[0] < 2 ? 1 : 2; };
+  SceneCase c(steel);
+  const BlockOptions o{.n = {4, 1, 1}, .high = {4, 1, 1}, .regions = {"left", "middle", "right"}, .region_of = [](const Vec3& x) {
+                         return x[0] < 1 ? 0 : x[0] < 2 ? 1 : 2;
+                       }};
   c.use(block_mesh(o), {Fidelity::rigid, Fidelity::rigid, Fidelity::rigid});
   {
     const Results r = c.solved();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Solid-shells in motion: natural frequencies against closed forms, what coarse steps keep, linear regions, several ranks.
 #include "base/shell_shape.hpp"
-#include "succeeded.hpp"
 #include "verify/beams/beam_scene.hpp"
 #include "verify/natural_modes/natural_modes.hpp"
 #include "verify/shells/shell_scene.hpp"
@@ -172,15 +171,12 @@ TEST_F(ShellDynamics, WhatHasNoClearThicknessIsRefusedByName) {
     use(m);
     work.write("scene.toml", shell_of(2e7, 0.3) + in_steps(1));
     const Ran r = work.run("hilo-solve scene.toml mesh.h5 -o no.h5");
-    EXPECT_EQ(r.exit, 2) << r.err;
-    EXPECT_NE(r.err.find(why), std::string::npos) << r.err;
+    expect_end(r, 2, why);
     EXPECT_NE(r.err.find("scene.toml:7:"), std::string::npos) << r.err;
   };
   refused(shell_mesh(plate(1, 1), 10, 10, 0.2, 2), "region \"shell\": the thickness of the cell at (0.05, 0.05, -0.05) is not clear");
   refused(shell_mesh(plate(1, 1), 30, 10, 0.06), "between its only two outer faces");
-  BlockOptions o;
-  o.shape = Shape::tet4, o.regions = {"shell"};
-  refused(block_mesh(o), "shells are of hex8, and it has tet4");
+  refused(block_mesh({.shape = Shape::tet4, .regions = {"shell"}}), "shells are of hex8, and it has tet4");
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces, moments and stress of shells against equilibrium and published plates.
-#include "succeeded.hpp"
 #include "verify/shells/shell_scene.hpp"
 
 namespace hilo::test::shells_resultants_test {
@@ -141,15 +140,12 @@ TEST_F(ShellResultants, AreRefusedWhereTheyAreNotOfOneLayer) {
   const std::string rest = held("xmin") + in_steps(1) + asked();
   use(shell_mesh(plate(1, 0.2), 4, 2, 0.02, 2));
   work.write("scene.toml", shell_of(2e11, 0.3) + rest);
-  const Ran layers = work.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
-  EXPECT_EQ(layers.exit, 2);
-  EXPECT_NE(layers.err.find("region \"shell\" has more than one layer of shells at"), std::string::npos) << layers.err;
+  expect_end(work.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5"), 2, "region \"shell\" has more than one layer of shells at");
   std::string solid = shell_of(2e11, 0.3) + rest;
   solid.replace(solid.find("shell = true\n"), 13, "");
   work.write("scene.toml", solid);
   const Ran none = work.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
-  EXPECT_EQ(none.exit, 2);
-  EXPECT_NE(none.err.find("scene.toml:"), std::string::npos) << none.err;
+  expect_end(none, 2, "scene.toml:");
   EXPECT_NE(none.err.find("\"shell\": the run has no shells that deform"), std::string::npos) << none.err;
 }
 

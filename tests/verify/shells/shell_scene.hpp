@@ -11,13 +11,12 @@ using Surface = std::function<std::pair<Vec3, Vec3>(double u, double v)>;
 
 /// n_u x n_v cells over the unit square, `layers` through the thickness h; facet sets xmin xmax (of u), ymin ymax (of v), zmin zmax.
 inline Mesh shell_mesh(const Surface& surface, int n_u, int n_v, double h, int layers = 1) {
-  BlockOptions o;
-  o.n[0] = n_u, o.n[1] = n_v, o.n[2] = layers, o.regions = {"shell"};
-  o.map = [&](const Vec3& x) -> Vec3 {
-    const auto [P, N] = surface(x[0], x[1]);
-    return P + h * (x[2] - 0.5) * N;
-  };
-  return block_mesh(o);
+  return block_mesh({.n = {n_u, n_v, layers},
+                     .map = [&](const Vec3& x) -> Vec3 {
+                       const auto [P, N] = surface(x[0], x[1]);
+                       return P + h * (x[2] - 0.5) * N;
+                     },
+                     .regions = {"shell"}});
 }
 /// Set of the nodes across the thickness at grid point (i, j).
 inline void add_stack(Mesh& m, const std::string& name, int i, int j, int n_u, int n_v, int layers = 1) {

@@ -2,12 +2,7 @@
 // Load steps that jump to another branch of equilibrium are told, and those that do not are not: the truss of two bars, whose path is
 // known in closed form, alone, beside what moves farther, with histories, on ranks; an arch of solids; and softening, stiffening and stops
 // along one branch.
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::jump_test {
@@ -167,12 +162,10 @@ namespace {
 
 /// A shallow arch of steel, 1 m long, rise 20 mm, 10 mm high, clamped at both ends: 24 x 1 x 1 hexahedra of 20 nodes, half of it.
 Mesh arch() {
-  BlockOptions o;
-  o.shape = Shape::hex20;
-  o.n[0] = 12;
-  o.low = Vec3(-0.5, -0.005, -0.005), o.high = Vec3(0, 0.005, 0.005);
-  o.map = [](const Vec3& x) { return Vec3(x[0], x[1] + 0.01 * (1 + std::cos(2 * M_PI * x[0])), x[2]); };
-  return block_mesh(o);
+  return block_mesh(
+      {.shape = Shape::hex20, .n = {12, 1, 1}, .low = {-0.5, -0.005, -0.005}, .high = {0, 0.005, 0.005}, .map = [](const Vec3& x) {
+         return Vec3(x[0], x[1] + 0.01 * (1 + std::cos(2 * M_PI * x[0])), x[2]);
+       }});
 }
 
 }  // namespace
@@ -215,10 +208,7 @@ TEST(SnapThrough, OfAnArchOfSolidsIsToldAtThePathsLimit) {
 // told.
 TEST(SnapThrough, IsNotToldOfAPlasticHinge) {
   Case c("stability");
-  BlockOptions o;
-  o.n[0] = 10, o.n[1] = 1, o.n[2] = 2;
-  o.shape = Shape::hex20;
-  o.high = Vec3(1, 0.1, 0.1);
+  const BlockOptions o{.shape = Shape::hex20, .n = {10, 1, 2}, .high = {1, 0.1, 0.1}};
   c.use(block_mesh(o));
   const double yields = 250e6 * std::pow(0.1, 3) / 6;  // N, at the tip
   for (const int steps : {2, 4, 16}) {

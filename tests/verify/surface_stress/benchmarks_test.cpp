@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Peaks of stress on three meshes of hex20r each, against published values, closed forms and reference.py: near from the first mesh on,
 // and nearer on each finer one.
-#include <fmt/format.h>
-
 #include <array>
-#include <map>
-#include <numbers>
 
-#include "succeeded.hpp"
 #include "verify/surface_stress/le10.hpp"
 
 namespace hilo::test::benchmarks_test {
@@ -75,15 +70,13 @@ double off(const Mesh& m, const Eigen::MatrixXd& stress, const Vec3& at, int com
   return worst;
 }
 
-/// Runs plane.toml with `more` on a plate held on its planes of symmetry and at the nodes at which z is held.
+/// Stress under `more` of a plate held on its planes of symmetry and at the nodes at which z is held.
 Eigen::MatrixXd stress_of(Mesh& m, const std::string& more, const std::function<bool(const Vec3&)>& x,
                           const std::function<bool(const Vec3&)>& y, const std::function<bool(const Vec3&)>& z) {
   add_node_set(m, "held x", x), add_node_set(m, "held y", y), add_node_set(m, "held z", z);
-  Case c("surface_stress");
+  SceneCase c(steel_block(210e9, held("held x", "x") + held("held y", "y") + held("held z", "z") + more, "\"displacement\", \"stress\""));
   c.use(m);
-  c.write("scene.toml", text_of(c.source("plane.toml")) + more);
-  succeeded(c.run("hilo-solve --quiet scene.toml mesh.h5"));
-  const Results r = c.results();
+  const Results r = c.solved();
   return r.table("/field/" + r.steps().back() + "/stress");
 }
 
@@ -91,7 +84,7 @@ constexpr double tiny = 1e-9;
 const auto everywhere = [](const Vec3&) { return true; };
 const auto at_x = [](double x) { return [x](const Vec3& X) { return std::abs(X[0] - x) < tiny; }; };
 const auto at_y = [](double y) { return [y](const Vec3& X) { return std::abs(X[1] - y) < tiny; }; };
-const std::string pull = "\n[[load]]\nkind = \"traction\"\nname = \"pull\"\non = \"end\"\ntraction = [1e6, 0, 0]\n";
+const std::string pull = load("traction", "pull", "end", "traction = [1e6, 0, 0]");
 
 /// NAFEMS LE10: sigma_yy = -5.38 MPa; polynomials of degree 6 give -5.397.
 double le10_off(int k) {
@@ -106,8 +99,8 @@ double le1_off(int k) {
               [](double s, double t) { return Vec3((2 + 1.25 * s) * std::cos(t * pi / 2), (1 + 1.75 * s) * std::sin(t * pi / 2), 0); }}},
             0.05);
   add_facets(m, "end", [](const Vec3& X) { return std::abs(std::pow(X[0] / 3.25, 2) + std::pow(X[1] / 2.75, 2) - 1) < 1e-6; });
-  const auto stress = stress_of(m, "\n[[load]]\nkind = \"pressure\"\nname = \"pull\"\non = \"end\"\npressure = -10e6\n", at_x(0), at_y(0),
-                                [](const Vec3& X) { return X[2] < tiny; });
+  const auto stress =
+      stress_of(m, load("pressure", "pull", "end", "pressure = -10e6"), at_x(0), at_y(0), [](const Vec3& X) { return X[2] < tiny; });
   return off(m, stress, {2, 0, 0}, 1, 92.7e6);
 }
 
@@ -116,8 +109,7 @@ double lame_off(int k) {
   Mesh m = plate(
       {{3 << k, 3 << k, [](double s, double t) { return Vec3((1 + s) * std::cos(t * pi / 2), (1 + s) * std::sin(t * pi / 2), 0); }}}, 0.2);
   add_facets(m, "end", [](const Vec3& X) { return std::abs(X.head<2>().norm() - 1) < 1e-6; });
-  const auto stress =
-      stress_of(m, "\n[[load]]\nkind = \"pressure\"\nname = \"inside\"\non = \"end\"\npressure = 1e4\n", at_x(0), at_y(0), everywhere);
+  const auto stress = stress_of(m, load("pressure", "inside", "end", "pressure = 1e4"), at_x(0), at_y(0), everywhere);
   return off(m, stress, {1, 0, 0}, 1, 5e4 / 3);
 }
 
@@ -137,12 +129,9 @@ double kirsch_off(int k) {
         r * (kappa + 1) * std::cos(t) + 2 / r * ((1 + kappa) * std::cos(t) + std::cos(3 * t)) - 2 / (r * r * r) * std::cos(3 * t);
     const double uy =
         r * (kappa - 3) * std::sin(t) + 2 / r * ((1 - kappa) * std::sin(t) + std::sin(3 * t)) - 2 / (r * r * r) * std::sin(3 * t);
-    m.node_sets[fmt::format("n{}", a)] = {a};
-    more += fmt::format(
-        "\n[[motion]]\nkind = \"translation\"\nname = \"n{0}\"\non = \"n{0}\"\ndisplacement = [{1:.17g}, {2:.17g}, 0]\ncomponents = "
-        "[\"x\", "
-        "\"y\"]\n",
-        a, scale * ux, scale * uy);
+    const std::string name = fmt::format("n{}", a);
+    m.node_sets[name] = {a};
+    more += motion("translation", name, name, "displacement = " + list({scale * ux, scale * uy, 0}) + "\ncomponents = [\"x\", \"y\"]");
   }
   const auto stress = stress_of(
       m, more, [&](const Vec3& X) { return std::abs(X[0]) < tiny && !outer(X); },

@@ -5,7 +5,6 @@
 //   small      M q'' + K q = 0 with M and K on these two: bounce of the body and hop of the wheel
 #include <Eigen/Eigenvalues>
 
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::suspension_test {

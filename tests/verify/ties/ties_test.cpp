@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Surfaces that are tied though their meshes do not match: patch tests, momenta in free flight, and closed forms.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <numbers>
 
-#include "succeeded.hpp"
+#include "scene_parts.hpp"
 #include "verify/contact/collision.hpp"
 
 namespace hilo::test::ties_test {
@@ -13,13 +10,30 @@ namespace {
 
 using Map = std::function<Vec3(const Vec3&)>;
 
+std::string tie(const std::string& a = "Azmax", const std::string& b = "Bzmin", const std::string& more = "",
+                const std::string& name = "weld") {
+  return fmt::format("[[tie]]\nname = \"{}\"\na = \"{}\"\nb = \"{}\"\n{}\n", name, a, b, more);
+}
+/// One block on the other, pulled.
+std::string pulled(double nu, double p, const std::string& holds) {
+  return solid(1e4, nu, 1) + tie() + holds + load("traction", "p", "Bzmax", fmt::format("traction = [0, 0, {}]", p)) +
+         fields("\"displacement\"") + in_steps(1) + solved_to(1e-12);
+}
+const std::string planes = held("Azmin", "z") + held("side", "x") + held("back", "y");
+/// They turn and shake in free flight.
+std::string flight(const std::string& tied = tie("Azmax", "Bzmin", "gap = 0.05")) {
+  return solid(2e6, 0.3, 1000) + tied + initial("*", "velocity = [0.3, 0.1, 0]\nspin = [1, 2, 3]") +
+         initial("Bzmax", "velocity = [0.5, -0.4, 0.6]") + fields("\"displacement\"") + in_time(0.16, 0.02) + solved_to(1e-13);
+}
+/// A bar that rings, held at one end.
+std::string rings(const std::string& guide) {
+  return solid(2e11, 0, 8000) + tie() + held("Azmin") + guide + "[time]\nanalysis = \"modes\"\nmodes = 3\n";
+}
+
 /// Two blocks of 1 x 1 x .5 m, one on the other.
 Mesh stack(Shape a, Shape b, int n_a, int n_b, const Map& map_a = nullptr, const Map& map_b = nullptr) {
-  BlockOptions A, B;
-  A.regions = {"A"}, B.regions = {"B"}, A.shape = a, B.shape = b, A.map = map_a, B.map = map_b;
-  A.n[0] = A.n[1] = n_a, B.n[0] = B.n[1] = n_b, A.n[2] = B.n[2] = 2;
-  A.high = Vec3(1, 1, 0.5), B.low = Vec3(0, 0, 0.5), B.high = Vec3(1, 1, 1);
-  Mesh m = together(block_mesh(A), block_mesh(B));
+  Mesh m = together(block_mesh({.shape = a, .n = {n_a, n_a, 2}, .high = {1, 1, 0.5}, .map = map_a, .regions = {"A"}}),
+                    block_mesh({.shape = b, .n = {n_b, n_b, 2}, .low = {0, 0, 0.5}, .map = map_b, .regions = {"B"}}));
   add_node_set(m, "side", [](const Vec3& x) { return std::abs(x[0]) < 1e-9; });
   add_node_set(m, "back", [](const Vec3& x) { return std::abs(x[1]) < 1e-9; });
   return m;
@@ -41,15 +55,15 @@ std::pair<double, double> off_linear(const std::vector<Vec3>& X, const std::vect
 TEST(Ties, PatchAcrossMeshesThatDoNotMatch) {
   using enum Shape;
   for (const auto& [a, b] : {std::pair{hex8, hex8}, {tet4, hex8}, {hex8, wedge6}, {hex20, tet10}, {tet10, wedge15}, {hex8, hex20}}) {
-    Case c("ties");
+    SceneCase c(pulled(0.3, 1, planes));
     const Mesh mesh = stack(a, b, 2, 3);
     c.use(mesh);
-    const Results r = c.solved("", "run.h5", "pull");
+    const Results r = c.solved();
     const auto [off, slope] = off_linear(mesh.X, r.field("displacement"));
     EXPECT_LT(off, 1e-9) << text_of(c / "run.json") << info(a).name << " " << info(b).name;
     EXPECT_NEAR(slope, 1e-4, 5e-8) << info(a).name << " " << info(b).name;
-    const Eigen::VectorXd carried = r.at("tie/weld", 1), pulled = -Eigen::VectorXd::Unit(6, 2);
-    EXPECT_LT((carried - pulled).norm(), 1e-9) << carried.transpose() << info(a).name << " " << info(b).name;
+    const Eigen::VectorXd carried = r.at("tie/weld", 1), pull = -Eigen::VectorXd::Unit(6, 2);
+    EXPECT_LT((carried - pull).norm(), 1e-9) << carried.transpose() << info(a).name << " " << info(b).name;
   }
 }
 
@@ -80,9 +94,9 @@ TEST(Ties, CurvedOnesKeepEnergyAndMomenta) {
   using enum Fidelity;
   for (const auto& [a, b, level] :
        {std::tuple{hex8, hex8, nonlinear}, {tet4, hex8, nonlinear}, {hex20, tet10, nonlinear}, {wedge6, hex8, rigid}}) {
-    Case c("ties");
+    SceneCase c(flight());
     c.use(bent(a, b, 2), {level, nonlinear});
-    const Results r = c.solved("", "run.h5", "flight");
+    const Results r = c.solved();
     const Kept kept(r);
     const std::string what = fmt::format("{} {} {}", info(a).name, info(b).name, word(level));
     EXPECT_LT(kept.energy, 1e-11) << what;
@@ -104,9 +118,9 @@ TEST(Ties, OfLinearRegionsKeepEnergyAndMomenta) {
                                 {2, linear, rigid},
                                 {8, nonlinear, linear},
                                 {8, linear, linear}}) {
-    Case c("ties");
+    SceneCase c(flight());
     c.use(bent(Shape::hex8, Shape::hex8, n), {a, b});
-    const Results r = c.solved("", "run.h5", "flight");
+    const Results r = c.solved();
     const Kept kept(r);
     const std::string what = fmt::format("{} {} {}", n, word(a), word(b));
     EXPECT_LT(kept.energy, 1e-11) << what;
@@ -125,36 +139,26 @@ TEST(Ties, PatchOfLinearRegions) {
                                 {8, linear, nonlinear},
                                 {8, nonlinear, linear},
                                 {8, linear, linear}}) {
-    Case c("ties");
+    SceneCase c(pulled(0, 1e-3, held("Azmin")));
     const Mesh mesh = stack(Shape::hex8, Shape::hex8, n, n + 1);
     c.use(mesh, {a, b});
-    std::string text = text_of(c.source("pull.toml"));
-    text.replace(text.find("nu = 0.3"), 8, "nu = 0"), text.replace(text.find("[0, 0, 1]"), 9, "[0, 0, 1e-3]");
-    text.erase(text.find("components = [\"z\"]"), 18);
-    const size_t first = text.find("[[motion]]", text.find("on = \"Azmin\"")), last = text.find("[[load]]");
-    c.write("scene.toml", text.erase(first, last - first));
-    const Ran ran = c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5");
+    const Results r = c.solved();
     const std::string what = fmt::format("{} {} {}", n, word(a), word(b));
-    ASSERT_EQ(ran.exit, 0) << what << ran.err;
-    const auto [off, slope] = off_linear(mesh.X, c.results().field("displacement"));
+    const auto [off, slope] = off_linear(mesh.X, r.field("displacement"));
     EXPECT_LT(off, 2e-7) << what;
     EXPECT_NEAR(slope, 1e-7, 1e-13) << what;
-    const Eigen::VectorXd carried = c.results().at("tie/weld", 1), pulled = -1e-3 * Eigen::VectorXd::Unit(6, 2);
-    EXPECT_LT((carried - pulled).norm(), 1e-11) << what << ": " << carried.transpose();
+    const Eigen::VectorXd carried = r.at("tie/weld", 1), pull = -1e-3 * Eigen::VectorXd::Unit(6, 2);
+    EXPECT_LT((carried - pull).norm(), 1e-11) << what << ": " << carried.transpose();
   }
 }
 
 // Truth: the run that names the rigid side as a; forces are those on the other side.
 TEST(Ties, OfARigidBAreThoseOfARigidA) {
-  Case c("ties");
+  SceneCase c(flight());
   c.use(bent(Shape::hex8, Shape::hex8, 2), {Fidelity::rigid, Fidelity::nonlinear});
-  const Results r = c.solved("", "run.h5", "flight");
-  std::string text = text_of(c.source("flight.toml"));
-  text.replace(text.find("\"Azmax\""), 7, "\"x\""), text.replace(text.find("\"Bzmin\""), 7, "\"Azmax\""),
-      text.replace(text.find("\"x\""), 3, "\"Bzmin\"");
-  c.write("turned.toml", text);
-  succeeded(c.run("hilo-solve --quiet turned.toml tags.h5 -o turned.h5"));
-  const Results turned(c / "turned.h5");
+  const Results r = c.solved();
+  c.write("turned.toml", flight(tie("Bzmin", "Azmax", "gap = 0.05")));
+  const Results turned = c.solved("", "turned.h5", "turned");
   const auto e = r.history("energy"), f = r.history("tie/weld");
   EXPECT_GT(f.cwiseAbs().maxCoeff(), 1);
   EXPECT_LT((turned.history("energy") - e).cwiseAbs().maxCoeff(), 1e-12 * e.col(0).maxCoeff());
@@ -164,10 +168,10 @@ TEST(Ties, OfARigidBAreThoseOfARigidA) {
 // Truth: the mean of the gap over facets that move stays zero, so that surfaces stay together to their sag.
 TEST(Ties, EveryIntegratorHoldsThem) {
   for (const std::string method : {"mid-point", "bdf2", "generalized-alpha", "bathe", "U0", "V0", "radau", "gauss"}) {
-    Case c("ties");
+    SceneCase c(flight());
     c.use(bent(Shape::hex8, Shape::hex8, 2));
     const std::string end = method == "gauss" ? "0.01" : "0.04";  // it is slow where no step resolves the waves
-    c.solve("--set time.end=" + end + " --set 'time.integrator=\"" + method + "\"'", "run.h5", 0, "flight");
+    c.solve("--set time.end=" + end + " --set 'time.integrator=\"" + method + "\"'");
     const Kept kept(c.results());
     EXPECT_LT(kept.momentum, 1e-9) << method;
   }
@@ -175,34 +179,27 @@ TEST(Ties, EveryIntegratorHoldsThem) {
 
 // Truth: (2 n - 1) c/(4 L) of a bar that is held at one end, c = 5000 m/s.
 TEST(Ties, ABarOfTwoMeshesRings) {
-  BlockOptions A, B;
-  A.regions = {"A"}, B.regions = {"B"};
-  A.n[0] = A.n[1] = 1, B.n[0] = B.n[1] = 2, A.n[2] = 20, B.n[2] = 30;
-  A.high = Vec3(0.1, 0.1, 1), B.low = Vec3(0, 0, 1), B.high = Vec3(0.1, 0.1, 2);
-  Mesh m = together(block_mesh(A), block_mesh(B));
+  Mesh m = together(block_mesh({.n = {1, 1, 20}, .high = {0.1, 0.1, 1}, .regions = {"A"}}),
+                    block_mesh({.n = {2, 2, 30}, .low = {0, 0, 1}, .high = {0.1, 0.1, 2}, .regions = {"B"}}));
   add_node_set(m, "guide", [](const Vec3& x) { return x[2] > 1e-9; });
-  Case c("ties");
+  SceneCase c(rings(held("guide", "xy")));
   c.use(m);
-  const Eigen::MatrixXd f = c.solved("", "run.h5", "bar").history("mode").bottomRows(3);
+  const Eigen::MatrixXd f = c.solved().history("mode").bottomRows(3);
   for (int n = 1; n <= 3; ++n) EXPECT_NEAR(f(n - 1, 0) / ((2 * n - 1) * 5000. / 8), 1, 2e-3) << n;
 }
 
 // Truth: one mesh, and beams: F L^3/(3 E I) with the shear of Timoshenko.
 TEST(Ties, ACantileverOfTwoMeshesBendsAsOne) {
   const auto tip = [](bool tied, Shape a, Shape b) {
-    BlockOptions A, B;
-    A.regions = {"A"}, B.regions = {"B"}, A.shape = a, B.shape = b;
-    A.n[0] = A.n[1] = 2, A.n[2] = tied ? 4 : 8, A.high = Vec3(0.1, 0.1, tied ? 0.5 : 1);
-    B.n[0] = B.n[1] = 3, B.n[2] = 5, B.low = Vec3(0, 0, 0.5), B.high = Vec3(0.1, 0.1, 1);
-    Mesh m = tied ? together(block_mesh(A), block_mesh(B)) : block_mesh(A);
+    const Mesh lower = block_mesh({.shape = a, .n = {2, 2, tied ? 4 : 8}, .high = Vec3(0.1, 0.1, tied ? 0.5 : 1), .regions = {"A"}});
+    Mesh m = tied ? together(lower, block_mesh({.shape = b, .n = {3, 3, 5}, .low = {0, 0, 0.5}, .high = {0.1, 0.1, 1}, .regions = {"B"}}))
+                  : lower;
     add_node_set(m, "wall", [](const Vec3& x) { return x[2] < 1e-9; });
     add_node_set(m, "tip", [](const Vec3& x) { return x[2] > 1 - 1e-9; });
-    Case c("ties");
+    SceneCase c(solid(2e11, 0.3, 8000) + held("wall") + force("tip", "tip", {1e3, 0, 0}) + probe("tip") + fields("\"displacement\"") +
+                in_steps(1) + (tied ? tie() : ""));
     c.use(m);
-    std::string text = text_of(c.source("cantilever.toml"));
-    if (tied) text += "[[tie]]\nname = \"weld\"\na = \"Azmax\"\nb = \"Bzmin\"\n";
-    c.write("scene.toml", text);
-    succeeded(c.run("hilo-solve scene.toml mesh.h5 -o run.h5"));
+    c.solve();
     if (tied) {  // the law of the lever
       const Eigen::VectorXd carried = c.results().at("tie/weld", 1);
       EXPECT_NEAR(carried[0], -1e3, 1e-5) << info(a).name << " " << info(b).name;
@@ -225,20 +222,12 @@ TEST(Ties, ACantileverOfTwoMeshesBendsAsOne) {
 TEST(Ties, LinearRegionsRingAsCellsDo) {
   using enum Fidelity;
   for (const int n : {2, 8}) {
-    BlockOptions A, B;
-    A.regions = {"A"}, B.regions = {"B"};
-    A.n[0] = A.n[1] = n, B.n[0] = B.n[1] = n + 1, A.n[2] = B.n[2] = 4;
-    A.high = Vec3(0.1, 0.1, 0.5), B.low = Vec3(0, 0, 0.5), B.high = Vec3(0.1, 0.1, 1);
-    const Mesh m = together(block_mesh(A), block_mesh(B));
+    const Mesh m = together(block_mesh({.n = {n, n, 4}, .high = {0.1, 0.1, 0.5}, .regions = {"A"}}),
+                            block_mesh({.n = {n + 1, n + 1, 4}, .low = {0, 0, 0.5}, .high = {0.1, 0.1, 1}, .regions = {"B"}}));
     const auto frequencies = [&](Fidelity a, Fidelity b) {
-      Case c("ties");
+      SceneCase c(rings(""));
       c.use(m, {a, b});
-      std::string text = text_of(c.source("bar.toml"));
-      const size_t guide = text.rfind("[[motion]]");
-      text.erase(guide, text.find("[time]") - guide);
-      c.write("scene.toml", text);
-      succeeded(c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
-      return Eigen::VectorXd(c.results().history("mode").bottomRows(3).col(0));
+      return Eigen::VectorXd(c.solved().history("mode").bottomRows(3).col(0));
     };
     const Eigen::VectorXd cells = frequencies(nonlinear, nonlinear);
     for (const auto& [a, b] : {std::pair{linear, nonlinear}, {nonlinear, linear}, {linear, linear}}) {
@@ -250,37 +239,26 @@ TEST(Ties, LinearRegionsRingAsCellsDo) {
 
 // Three blocks about an edge: its nodes are of two ties, and some of them are held.  Truth: uniform stress.
 TEST(Ties, OfAnEdgeAndOfHeldNodes) {
-  BlockOptions A, B, C;
-  A.regions = {"A"}, B.regions = {"B"}, C.regions = {"C"};
-  A.n[0] = 3, A.n[1] = 2, B.n[0] = B.n[1] = C.n[1] = 3, C.n[0] = 2;
-  A.high = Vec3(1, 1, 0.5), B.low = Vec3(0, 0, 0.5), B.high = Vec3(0.5, 1, 1), C.low = Vec3(0.5, 0, 0.5), C.high = Vec3(1, 1, 1);
-  Mesh m = together(block_mesh(A), block_mesh(B), block_mesh(C));
+  Mesh m = together(block_mesh({.n = {3, 2, 1}, .high = {1, 1, 0.5}, .regions = {"A"}}),
+                    block_mesh({.n = {3, 3, 1}, .low = {0, 0, 0.5}, .high = {0.5, 1, 1}, .regions = {"B"}}),
+                    block_mesh({.n = {2, 3, 1}, .low = {0.5, 0, 0.5}, .regions = {"C"}}));
   add_node_set(m, "side", [](const Vec3& x) { return std::abs(x[0]) < 1e-9; });
   add_node_set(m, "back", [](const Vec3& x) { return std::abs(x[1]) < 1e-9; });
-  Case c("ties");
+  SceneCase c(pulled(0.3, 1, planes) + tie("Azmax", "Czmin", "", "second") + tie("Cxmin", "Bxmax", "", "third") +
+              load("traction", "q", "Czmax", "traction = [0, 0, 1]"));
   c.use(m);
-  std::string text = text_of(c.source("pull.toml"));
-  for (const auto& [name, a, b] : {std::tuple{"second", "Azmax", "Czmin"}, {"third", "Cxmin", "Bxmax"}})
-    text = fmt::format("[[tie]]\nname = \"{}\"\na = \"{}\"\nb = \"{}\"\n", name, a, b) + text;
-  text += "[[load]]\nkind = \"traction\"\nname = \"q\"\non = \"Czmax\"\ntraction = [0, 0, 1]\n";
-  c.write("scene.toml", text);
-  succeeded(c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5"));
-  const auto [off, slope] = off_linear(m.X, c.results().field("displacement"));
+  const auto [off, slope] = off_linear(m.X, c.solved().field("displacement"));
   EXPECT_LT(off, 1e-9);
   EXPECT_NEAR(slope, 1e-4, 5e-8);
 }
 
 /// One line with its place, and exit 2, of the flight with another surface b.
 void expect_refused(const Mesh& mesh, const std::vector<Fidelity>& levels, const std::string& b, const std::string& words) {
-  Case c("ties");
+  const bool twentieth = words.find("twentieth") != words.npos;
+  SceneCase c(flight(tie("Azmax", b, twentieth ? "" : "gap = 0.05")));
   c.use(mesh, levels);
-  std::string text = text_of(c.source("flight.toml"));
-  text.replace(text.find("\"Bzmin\""), 7, '"' + b + '"');
-  if (words.find("twentieth") != std::string::npos) text.replace(text.find("gap ="), 10, "");
-  c.write("scene.toml", text);
   const Ran ran = c.run(std::string("hilo-solve --quiet scene.toml ") + (levels.empty() ? "mesh.h5" : "tags.h5"));
-  EXPECT_EQ(ran.exit, 2) << words;
-  EXPECT_NE(ran.err.find(words), std::string::npos) << ran.err;
+  expect_end(ran, 2, words);
   EXPECT_NE(ran.err.find("hilo-solve: scene.toml:1"), std::string::npos) << ran.err;
 }
 

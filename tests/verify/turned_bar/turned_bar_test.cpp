@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A bar without loads follows the rotation of its end as a rigid body: x = at + R (X - at), and Green's strain of a rotation is zero.
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::turned_bar_test {
@@ -12,15 +13,12 @@ INSTANTIATE_TEST_SUITE_P(EveryShape, TurnedBar,
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
 TEST_P(TurnedBar, FollowsWithoutStress) {
-  for (const char* law : {"stvk", "neo-hookean"}) {
-    Case c("turned_bar");
-    BlockOptions o;
-    o.shape = GetParam();
-    o.n[0] = 3;
-    o.high = Vec3(1, 0.2, 0.1);
-    const Mesh m = block_mesh(o);
+  for (const std::string law : {"stvk", "neo-hookean"}) {
+    SceneCase c(solid(2e11, 0.3, 7800, "block", "kind = \"" + law + "\"") +
+                motion("rotation", "hand", "xmin", "at = [0.2, -0.1, 0.3]\naxis = [1, 2, -0.5]\nangle = 2") + in_steps(8));
+    const Mesh m = block_mesh({.shape = GetParam(), .n = {3, 1, 1}, .high = {1, 0.2, 0.1}});
     c.use(m);
-    const Results r = c.solved(std::string("--set 'material.steel.kind=\"") + law + "\"'");
+    const Results r = c.solved();
     const auto u = r.field("displacement");
     const Vec3 at(0.2, -0.1, 0.3);
     const Mat3 R = Eigen::AngleAxisd(2, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();

@@ -2,11 +2,7 @@
 // The scene of data/turret.  What turns about the ring gains angular momentum by the torques on it alone; what the ring carries is
 // m r omega^2 outwards, m r alpha against the turn and the weight, from the masses and centres of mass of the bodies in the results file
 // (truth.py); with a support made stiffer the bearing force comes to that of the rigid run as 1/E.
-#include <cmath>
-
-#include "succeeded.hpp"
 #include "verify/truth.hpp"
-#include "verify/verify.hpp"
 
 namespace hilo::test::turret_test {
 namespace {

@@ -11,13 +11,11 @@ const Vec3 size(0.3, 0.1, 0.1);
 
 /// Cells that are far smaller at x = 0, so that the mean of the nodes is far from the centre; two regions that share nodes.
 Mesh graded() {
-  BlockOptions o;
-  o.n[0] = 6, o.n[1] = o.n[2] = 2;
-  o.high = size;
-  o.regions = {"left", "right"};
-  o.region_of = [](const Vec3& x) { return x[0] < 0.2 ? 0 : 1; };
-  o.map = [](const Vec3& x) { return Vec3(x[0] * x[0] / size[0], x[1], x[2]); };
-  return block_mesh(o);
+  return block_mesh({.n = {6, 2, 2},
+                     .high = size,
+                     .map = [](const Vec3& x) { return Vec3(x[0] * x[0] / size[0], x[1], x[2]); },
+                     .regions = {"left", "right"},
+                     .region_of = [](const Vec3& x) { return x[0] < 0.2 ? 0 : 1; }});
 }
 const double border = 0.2 * 0.2 / 0.3;  // of the regions, after the map
 const Vec3 centre_left(border / 2, 0.05, 0.05);
@@ -104,8 +102,7 @@ TEST(WholeRegionRefused, AMassAtAPointOfAFlexibleRegion) {
                            "name = \"m\"\non = \"{}\"\nmass = 5\nat = [0.1, 0.05, 0.05]\n[time]\nend = 0.01\nstep = 1e-3\n",
                            on));
     const Ran ran = work.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5");
-    EXPECT_EQ(ran.exit, 2);
-    EXPECT_NE(ran.err.find("scene.toml:11:1"), std::string::npos) << ran.err;
+    expect_end(ran, 2, "scene.toml:11:1");
     EXPECT_NE(ran.err.find("is flexible, its nodes share the mass"), std::string::npos) << ran.err;
   }
 }
