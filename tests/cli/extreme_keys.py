@@ -11,9 +11,11 @@ import json
 import os
 import re
 import resource
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 import h5py
 import numpy
@@ -172,6 +174,10 @@ def bad(key, kind, value, default):
 MATRIX = {"stiffness": "[1e6, 1e6, 1e6]", "coupling": "[0, 0, 0, 0, 0, 1, 0, 0, 0]", "inertia": "[0.01, 0.1]"}
 
 
+# Of a field of heights that is an image.
+IMAGE = {"file": '"road.png"', "size": "[9, 9]", "heights": "[0, 0.1]"}
+
+
 def entry(section, kind, keys, tried, value):
     """The table of the tried key, with what it must have."""
     lines = [f'kind = "{kind}"'] if kind else []
@@ -208,6 +214,9 @@ def entry(section, kind, keys, tried, value):
         beside.add("line_mass")
     if section == "section" and kind == "mesh":
         beside.add("file")
+    of_image = kind == "height-field" and tried in ("size", "heights")
+    if of_image:
+        beside |= {"size", "heights"}
     if section == "contact" and tried not in ("modulus", "layer"):
         beside.add("stiffness")
     for key, type_, default in keys:
@@ -217,6 +226,8 @@ def entry(section, kind, keys, tried, value):
             word = of_set(kind, key) if section == "set" and of_set(kind, key) else good(key, type_)
             if kind == "matrix":
                 word = MATRIX.get(key, word)
+            if of_image:
+                word = IMAGE.get(key, word)
             if key == "name" and section == "body":
                 word = '"arm"'
             if section == "load" and kind in ("traction", "pressure") and key == "on":
@@ -343,6 +354,11 @@ def judge(text, with_mesh):
 def make_mesh():
     with open("road.csv", "w") as f:
         f.write("y\\x,-9,0,9\n-9,0,0.1,0\n0,0.1,0,0\n9,0,0,0\n")
+    with open("road.png", "wb") as f:  # 2 x 2 levels of grey
+        def chunk(name, data):
+            return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+        f.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 2, 2, 8, 0, 0, 0, 0)) +
+                chunk(b"IDAT", zlib.compress(bytes([0, 1, 2, 0, 3, 4]))) + chunk(b"IEND", b""))
     with open("face.msh", "w") as f:
         f.write(FACE)
     for name, text, regions in (("mesh", MESH, ["block"]), ("two", MESH + LID, ["block", "lid"])):
@@ -358,6 +374,8 @@ def usual(section, kind, key, type_):
         return '"face.msh"'
     if kind == "matrix":
         return MATRIX.get(key, value)
+    if kind == "height-field":
+        return IMAGE.get(key, value)
     if kind == "bushing" and value.count(",") == 0 and type_ == "numbers":
         value = "[" + ", ".join(3 * [value.strip("[]")]) + "]"
     return "{t = [0, 0.02], value = [0, 1]}" if type_ == "history" else value
