@@ -8,6 +8,7 @@
 
 #include "succeeded.hpp"
 #include "verify/contact/clip.hpp"
+#include "verify/ties/tied_blocks.hpp"
 
 namespace hilo::test::on_ranks_test {
 namespace {
@@ -20,7 +21,7 @@ enum class Division {
 
 /// A scene and its mesh, to be run on any number of ranks.
 struct Scene {
-  std::string folder, text, options;
+  std::string folder, text, options;  // the text, or the name of a file in the folder
   Mesh mesh;
   std::vector<Fidelity> fidelity;
 };
@@ -64,7 +65,8 @@ Off off(const Results& one, const Results& other) {
 class OnRanks {
  public:
   explicit OnRanks(Scene scene) : scene_(std::move(scene)), case_(scene_.folder) {
-    case_.write("scene.toml", scene_.text.empty() ? "" : text_of(case_.source(scene_.text + ".toml")));
+    const bool is_named = !scene_.text.empty() && scene_.text.find('\n') == std::string::npos;
+    case_.write("scene.toml", is_named ? text_of(case_.source(scene_.text + ".toml")) : scene_.text);
     if (scene_.mesh.n_cells() == 0) return;
     write_mesh(case_ / "mesh.h5", scene_.mesh, {"test"});
     write_tags(case_ / "tags.h5", case_ / "mesh.h5", scene_.fidelity, {"test"});
@@ -197,9 +199,10 @@ Mesh stack(bool bent) {
 }
 
 TEST(OnRanks, TiesHold) {
-  expect_same_on(OnRanks({"ties", "pull", "", stack(false), {nonlinear, nonlinear}}), {{2, scattered}, {3, away}}, 1e-9, "pulled");
+  expect_same_on(OnRanks({"ties", pulled(0.3, 1, planes), "", stack(false), {nonlinear, nonlinear}}), {{2, scattered}, {3, away}}, 1e-9,
+                 "pulled");
   for (const Fidelity level : {nonlinear, rigid})
-    expect_same_on(OnRanks({"ties", "flight", "", stack(true), {level, nonlinear}}),
+    expect_same_on(OnRanks({"ties", flight(), "", stack(true), {level, nonlinear}}),
                    {{3, level == rigid ? scattered : away}, {4, scattered}}, 1e-9, fmt::format("in flight, a {}", word(level)));
 }
 
