@@ -90,7 +90,7 @@ void Length::values(const Values& e, double* x) const { x[0] = std::sqrt(std::ma
 /// (l1 - l0)/(l1^2 - l0^2) = 1/(l0 + l1).
 void Length::gradient(const Values& e0, const Values& e1, Gradient& out) const {
   const double l1 = std::sqrt(std::max(e1[0], 1e-300)), sum = std::sqrt(std::max(e0[0], 1e-300)) + l1;
-  out = {};
+  out.clear(n_rows());
   out.d[0][0] = 1 / sum;
   out.D[0][0][0] = -1 / (sum * sum) / (2 * l1);
 }

@@ -37,7 +37,7 @@ void SumRows::values(const Values& e, double* g) const {
 }
 
 void SumRows::gradient(const Values& e0, const Values& e1, Gradient& out) const {
-  out = {};
+  out.clear(n_rows());
   for (int r = 0; r < n_plain_; ++r) out.d[r][r] = 1;
   for (size_t k = 0; k < sums_.size(); ++k) {
     auto& d = out.d[n_plain_ + k];
@@ -152,7 +152,7 @@ void CurveRows::values(const Values& e, double* g) const {
 }
 
 void CurveRows::gradient(const Values& e0, const Values& e1, Gradient& out) const {
-  out = {};
+  out.clear(n_rows());
   const Vec3 a = point_of(e0), b = point_of(e1), step = b - a;
   const Local mid = local((a + b) / 2);
   // below this step the correction is smaller than the round-off it is made of

@@ -109,7 +109,7 @@ struct Height final : RowLaw {
   void values(const Values& e, double* g) const override { g[0] = e[0] - radius * (cosine(e[1]) - start); }
   void gradient(const Values& e0, const Values& e1, Gradient& out) const override {
     const double c1 = cosine(e1[1]), sum = cosine(e0[1]) + c1, m = e0[1] + e1[1];
-    out = {};
+    out.clear(n_rows());
     out.d[0][0] = 1, out.d[0][1] = radius * m / sum;
     out.D[0][1][1] = radius * (1 / sum + m / (sum * sum) * e1[1] / c1);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of the measures of a connector: rows of joints, and coordinates that forces act along.
 #pragma once
+#include <algorithm>
 #include <string>
 
 #include "base/archive.hpp"
@@ -12,10 +13,14 @@ namespace hilo {
 class RowLaw {
  public:
   using Values = std::array<double, max_measures>;
-  /// Gradients of the rows by the measures, and their derivatives.
+  /// Gradients of the rows by the measures, and their derivatives; of rows that there are not, nothing is said.
   struct Gradient {
-    std::array<std::array<double, max_measures>, max_rows> d{};                            // d_r                    (rows x measures)
-    std::array<std::array<std::array<double, max_measures>, max_measures>, max_rows> D{};  // d(d_r)/de1
+    std::array<std::array<double, max_measures>, max_rows> d;                            // d_r                    (rows x measures)
+    std::array<std::array<std::array<double, max_measures>, max_measures>, max_rows> D;  // d(d_r)/de1
+    void clear(int n_rows) {
+      std::fill_n(d.begin(), n_rows, std::array<double, max_measures>{});
+      for (int r = 0; r < n_rows; ++r) D[r].fill({});
+    }
   };
   virtual ~RowLaw() = default;
   virtual int n_rows() const = 0;

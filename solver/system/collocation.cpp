@@ -62,8 +62,8 @@ void elastic_along(const SpringLaw& law, const MeasurePath& path, const Collocat
 
 void gradient_along(const RowLaw& rows, const MeasurePath& path, const Collocation& step, int i, RowLaw::Gradient& out) {
   RowLaw::Gradient at[Collocation::n], whole;
-  for (int j = 0; j < Collocation::n; ++j) rows.gradient(path.at[j], path.at[j], at[j] = {});
-  rows.gradient(path.e0, path.e1, whole = {});
+  for (int j = 0; j < Collocation::n; ++j) rows.gradient(path.at[j], path.at[j], at[j]);
+  rows.gradient(path.e0, path.e1, whole);
   out = at[i];
   const Vectors ways = ways_of(path);
   for (int r = 0; r < rows.n_rows(); ++r) {
