@@ -4,9 +4,10 @@
 that a suite can wait for, rigid and flexible, serial and on two ranks.  Prints the median of processor seconds of the steps
 (`processor_seconds` of run.json) and their ratio; the first run of each is not counted.
 
-  beside.py REPO BIN BEFORE [ROUNDS]     folders with hilo-solve after and before, 7 rounds; nothing else should run on the machine
+  beside.py REPO BIN BEFORE [ROUNDS [KEY=VALUE ...]]     folders with hilo-solve after and before, 7 rounds; nothing else should run
 
-REPO: a working tree whose scenes both builds can read, that of the older one, say."""
+REPO: a working tree whose scenes both builds can read, that of the older one, say.  KEY=VALUE: settings of the newer build alone, which the
+older one does not know."""
 import json
 import os
 import statistics
@@ -15,7 +16,7 @@ import sys
 import tempfile
 
 repo, after, before = (os.path.abspath(p) for p in sys.argv[1:4])
-rounds = int(sys.argv[4]) if len(sys.argv) > 4 else 7
+rounds, newer = int(sys.argv[4]) if len(sys.argv) > 4 else 7, sys.argv[5:]
 sys.argv[1:] = [repo, after]
 sys.path.insert(0, os.path.join(repo, "tests/cli"))
 from any_ranks import SCENES, mesh_of, prepare, run  # noqa: E402
@@ -35,6 +36,7 @@ def seconds(solver, name, ranks, sets):
         if not os.path.exists(parts):
             run("hilo-part", "--quiet", mesh, SCENES[name][0], "-n", str(ranks), "-o", parts)
         mesh = parts
+    sets = sets + (newer if solver == after else [])
     options = [word for s in sets + ["output.interval=1e3", "output.fields=[\"displacement\", \"von_mises\"]"] for word in ("--set", s)]
     launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
     command = [*launcher, os.path.join(solver, "hilo-solve"), "--quiet", *options, SCENES[name][0], *([mesh] if mesh else []), "-o", "beside.h5"]
