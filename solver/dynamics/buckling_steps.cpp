@@ -281,7 +281,8 @@ class BucklingSteps final : public Steps {
     const std::string what = fmt::format("linear region \"{}\": its stresses change no stiffness, so factors are too large", name);
     const auto says_so = [&](const Entry& e) { return e.given("stiffening") && fnmatch(e.name.c_str(), name.c_str(), 0) == 0; };
     if (m.of_beams || std::ranges::none_of(run_.scene.entries("region"), says_so))
-      throw Error(time_.where("analysis"), what, fmt::format("{}{}", m.better(), m.of_beams ? "" : "; stiffening = false takes it as it is"));
+      throw Error(time_.where("analysis"), what,
+                  fmt::format("{}{}", m.better(), m.of_beams ? "" : "; stiffening = false takes it as it is"));
     warn(time_.where("analysis"), what);
   }
 
