@@ -143,10 +143,8 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   }
   Eigen::Index worst = 0;
   if (left.size() > 0) left.cwiseAbs().maxCoeff(&worst);
-  const auto meets = [&](int k) { return column_[static_cast<size_t>(k)] / 3 == static_cast<int>(worst / 3); };
-  int k = 0;
-  while (k + 1 < static_cast<int>(column_.size()) && !meets(k)) ++k;
-  const Row& row = *std::ranges::find_if(rows_, [&](const Row& one) { return static_cast<size_t>(k) < one.end; });
+  const auto met = std::ranges::find(column_, static_cast<int>(worst / 3), [](int c) { return c / 3; }) - column_.begin();
+  const Row& row = *std::ranges::upper_bound(rows_, std::min(static_cast<size_t>(met), column_.size() - 1), {}, &Row::end);
   if (!told_)
     warn("",
          fmt::format("{}: shares of redundant rows are not found (off by {:.1e}): at such instants reactions are those of the rows kept",

@@ -176,14 +176,14 @@ std::optional<Config> beside(const System& system, const Config& q, const Eigen:
     if (gap < (k < iterations ? 1e-14 : 1e-12) * system.length) return out;
     if (k == iterations) return {};
     // Rows of a pose before close the gap too, where they are not about to become dependent: a factor is dear in large nets.
-    Eigen::VectorXd way;
+    Eigen::VectorXd back;
     const bool closes = k == 0 || gap < 0.5 * last;
-    if (closes) way = nearest.within(plane, g);
-    if (!closes || way.cwiseAbs().maxCoeff() > far * system.length) {
+    if (closes) back = nearest.within(plane, g);
+    if (!closes || back.cwiseAbs().maxCoeff() > far * system.length) {
       if (!nearest.factor(std::move(unit.A))) return {};
-      way = nearest.within(plane, g);
+      back = nearest.within(plane, g);
     }
-    displace(system, out, -way);
+    displace(system, out, -back);
     last = gap;
   }
 }

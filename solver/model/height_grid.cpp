@@ -87,12 +87,11 @@ class GreyImage {
   std::vector<png_bytep> rows_;
 };
 
-constexpr std::string_view signature = "\x89PNG\r\n\x1a\n";
-
 bool is_image(const std::string& path) {
-  char first[signature.size()];
-  return std::filesystem::is_regular_file(path) && std::ifstream(path, std::ios::binary).read(first, sizeof first) &&
-         std::string_view(first, sizeof first) == signature;
+  unsigned char first[8];
+  return std::filesystem::is_regular_file(path) &&
+         std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(first), sizeof first) &&
+         png_sig_cmp(first, 0, sizeof first) == 0;
 }
 
 }  // namespace

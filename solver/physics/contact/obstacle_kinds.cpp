@@ -108,9 +108,8 @@ Registry<ObstacleKind>& obstacle_kinds() {
          {"axis", vector3, "1", "[0, 0, 1]", "the direction of the heights"},
          {"x", vector3, "1", "[1, 0, 0]", "the direction of x of the file, made normal to `axis`"},
          {"file", text, "", "!",
-          "CSV in the length of the scene: a word and the x of the columns, then lines of a y and the heights there; x and y rise; or a "
-          "grey "
-          "PNG image, whose left lowest pixel is x = y = 0"},
+          "CSV in the length of the scene: a word and the x of the columns, then lines of a y and the heights there; x and y rise; "
+          "or a grey PNG image, whose left lowest pixel is x = y = 0"},
          {"size", numbers, "m", "", "of an image: from its first pixel to its last along x and along y", above(0), {2}},
          {"heights", numbers, "m", "", "of an image: of black and of white", any_number, {2}}},
         height_field}}};

@@ -149,7 +149,7 @@ TEST_F(Buckling, OfCellsAndOfStiffeningRegionsIsEulers) {
   const auto linear = [&](const char* law) { return solid(E, 0, 1000, "*", "", law) + held("zmin") + push("zmax", Vec3(0, 0, -1)); };
   const std::string said = refused(linear(""));
   EXPECT_NE(said.find("its stresses change no stiffness, so factors are too large (stiffening = true"), said.npos) << said;
-  factors(linear("stiffening = false"), 2);
+  EXPECT_NEAR(factors(linear("stiffening = false"), 2)[0] / euler, 1.22, 0.01);
   EXPECT_NE(ran.err.find("its stresses change no stiffness"), ran.err.npos) << ran.err;
   write_tags(work / "tags.h5", work / "mesh.h5", {Fidelity::nonlinear}, {"test"});
   const std::string metal = refused(solid(E, 0, 1000, "*", "kind = \"j2\"\nyield = 1e6") + held("zmin") + push("zmax", Vec3(0, 0, -1)));
@@ -163,6 +163,9 @@ TEST_F(Buckling, IsRefusedByName) {
   const std::string push_end = push("arm.end", Vec3(0, 0, -1));
   says(refused(column()), "no load grows");
   says(refused(column("") + push_end), "is free to move");
+  says(refused(column("a = \"ground\"\nfidelity = \"linear\"") + push_end, "",
+               "hilo-solve --set section.s.line_mass=1 --set 'section.s.inertia=[0.01, 0.01]'"),
+       "its stresses change no stiffness, so factors are too large (fidelity = \"nonlinear\")");
   says(refused(column() + push_end, "start = \"equilibrium\"\n"), "grow from the drawn state");
   says(refused(column() + push_end, "", "export " + for_ranks + "\nmpirun -n 2 hilo-solve"), "on one rank");
   says(refused(column() + load("line", "follows", "arm", "force_per_length = [0, 0, -1]\nfollower = true\n")), "no potential");
