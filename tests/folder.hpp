@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <stdexcept>
 #include <string>
 
 namespace hilo::test {
@@ -36,8 +37,10 @@ class Folder {
   std::filesystem::path path_;
 };
 
+/// Error where there is none to be read: an empty text would let a test pass that looks for nothing in it.
 inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error("no file " + file.string());
   return {std::istreambuf_iterator<char>(in), {}};
 }
 inline void write_text(const std::filesystem::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }

@@ -38,35 +38,27 @@ MinimumNorm::MinimumNorm(const System& system) : system_(system) {
 void MinimumNorm::take_rows(const Stage& stage) {
   const auto all = system_.constraints();
   std::vector<DenseRows> G(all.size());
+  for (size_t j = 0; j < all.size(); ++j) G[j] = all[j]->gradient(stage);
+  const auto each_part = [&](const auto& visit) {  // of a row, in a block
+    for (int j = 0; j < cliques_.size(); ++j)
+      for (Eigen::Index r = 0; r < G[j].rows(); ++r)
+        for (size_t k = 0; k < cliques_[j].size(); ++k) visit(cliques_[j][k], Eigen::Map<Vec3>(&G[j](r, 3 * static_cast<Eigen::Index>(k))));
+  };
   std::vector<Mat3> scale(A_.n_blocks(), Mat3::Zero());  // of unknowns: their rows next to each other are near unit ones
-  for (int j = 0; j < cliques_.size(); ++j) {
-    G[j] = all[j]->gradient(stage);
-    for (size_t k = 0; k < cliques_[j].size(); ++k) {
-      const auto part = G[j].middleCols<3>(3 * static_cast<Eigen::Index>(k));
-      scale[cliques_[j][k]] += part.transpose() * part;
-    }
-  }
+  each_part([&](int block, const Vec3& g) { scale[block] += g * g.transpose(); });
   std::vector<Vec3> squares(scale.size(), Vec3::Zero());  // along the axes of each block, by rows: those of the sum end in round-off
-  std::vector<Mat3> axes;
-  for (const Mat3& S : scale) axes.push_back(Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvectors());
-  for (int j = 0; j < cliques_.size(); ++j)
-    for (size_t k = 0; k < cliques_[j].size(); ++k) {
-      const int block = cliques_[j][k];
-      squares[block] += (G[j].middleCols<3>(3 * static_cast<Eigen::Index>(k)) * axes[block]).colwise().squaredNorm().transpose();
-    }
+  for (Mat3& S : scale) S = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvectors().eval();
+  each_part([&](int block, const Vec3& g) { squares[block] += (scale[block].transpose() * g).cwiseAbs2(); });
   for (size_t block = 0; block < scale.size(); ++block) {
     const Vec3& of = squares[block];
     const Vec3 factor = (of.array() > least * of.maxCoeff()).select(of.cwiseSqrt().cwiseInverse(), 0);
-    scale[block] = axes[block] * factor.asDiagonal() * axes[block].transpose();
+    scale[block] = (scale[block] * factor.asDiagonal() * scale[block].transpose()).eval();
   }
+  each_part([&](int block, Eigen::Map<Vec3> g) { g = (scale[block] * g).eval(); });
   A_.zero();
   rows_.clear(), column_.clear(), value_.clear();
   for (int j = 0; j < cliques_.size(); ++j) {
-    DenseRows& own = G[j];
-    for (size_t k = 0; k < cliques_[j].size(); ++k) {
-      auto part = own.middleCols<3>(3 * static_cast<Eigen::Index>(k));
-      part = (part * scale[cliques_[j][k]]).eval();
-    }
+    const DenseRows& own = G[j];
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, max_directions, max_directions> K =
         decltype(K)::Zero(own.cols(), own.cols());
     for (Eigen::Index r = 0; r < own.rows(); ++r) {

@@ -26,28 +26,36 @@ struct Builder::LoadReading {
 
   bool has_facets() const { return b.mesh_ && b.mesh_->mesh.facet_sets.contains(on); }
   bool is_of_body() const { return found.body >= 0 && found.n_global == 0; }
-  std::vector<std::vector<int>> facets() const {
+  const std::vector<Facet>& facets() const {
     if (!has_facets()) throw Error(where, fmt::format("{}: \"{}\" is not a set of facets", e.label(), on), "name a 2-D group or *SURFACE");
-    std::vector<std::vector<int>> list;
-    for (const Facet& f : b.mesh_->mesh.facet_sets.at(on)) {
-      const auto nodes = b.mesh_->mesh.facet_nodes(f);
-      list.emplace_back(nodes.begin(), nodes.end());
-    }
-    return list;
+    return b.mesh_->mesh.facet_sets.at(on);
   }
-  /// Returns the area of all ranks.
-  double share_by_area() {
-    std::vector<double> weight(out.X.size(), 0.0);
-    double area = 0;
-    for (const auto& facet : facets()) {
-      std::vector<Vec3> X;
-      for (int i : facet) X.push_back(out.X[i]);
-      const auto w = facet_weights(X);
-      for (size_t a = 0; a < facet.size(); ++a) weight[facet[a]] += w[a], area += w[a];
+  std::vector<int> nodes_of(const Facet& f) const {
+    const auto nodes = b.mesh_->mesh.facet_nodes(f);
+    return {nodes.begin(), nodes.end()};
+  }
+  std::vector<Vec3> positions(const std::vector<int>& nodes) const {
+    std::vector<Vec3> X;
+    for (const int i : nodes) X.push_back(out.X[i]);
+    return X;
+  }
+  /// Areas of the facets by their nodes [m^2].
+  std::map<int, double> areas() const {
+    std::map<int, double> weight;
+    for (const Facet& facet : facets()) {
+      const std::vector<int> nodes = nodes_of(facet);
+      const auto w = facet_weights(positions(nodes));
+      for (size_t a = 0; a < nodes.size(); ++a) weight[nodes[a]] += w[a];
     }
-    for (size_t i = 0; i < weight.size(); ++i)
-      if (weight[i] != 0) load.nodes.push_back(static_cast<int>(i)), load.weight.push_back(weight[i]);
-    return b.comm_.sum(area);
+    return weight;
+  }
+  /// `value` times the weight of each node; what follows rigid bodies acts on these.
+  void act_on(const std::map<int, double>& weight) {
+    std::map<int, Vec3> force;
+    for (const auto& [i, w] : weight)
+      if (w != 0) force[i] = w * load.value;
+    for (Load& one : b.take_rigid_share(force, load)) out.part<Loads>().list.push_back(std::move(one));
+    for (const auto& [i, f] : force) load.nodes.push_back(i), load.weight.push_back(weight.at(i));
   }
 
   void force() {
@@ -63,24 +71,51 @@ struct Builder::LoadReading {
     if (e.has("at"))
       throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, its force is shared by its nodes", e.label(), on),
                   "name a set of nodes there");
+    std::map<int, double> weight;
     if (e.boolean("per_node")) {
       for (int i : found.nodes)
-        if (out.node_owned[i]) load.nodes.push_back(i), load.weight.push_back(1);
+        if (out.node_owned[i]) weight[i] = 1;
     } else if (has_facets()) {
-      const double area = share_by_area();
-      for (double& w : load.weight) w /= area;
+      weight = areas();
+      double area = 0;
+      for (const auto& [i, w] : weight) area += w;
+      area = b.comm_.sum(area);
+      for (auto& [i, w] : weight) w /= area;
     } else {
-      for (const auto& [i, share] : b.shares_of(found)) load.nodes.push_back(i), load.weight.push_back(share);
+      for (const auto& [i, share] : b.shares_of(found)) weight[i] += share;
     }
+    act_on(weight);
   }
   void traction() {
     load.value = e.vector3("traction");
-    share_by_area();
+    act_on(areas());
   }
+  /// Facets of a rigid region push its body with one force and one moment, which turn with it.
   void pressure() {
-    load.kind = Load::Kind::pressure;
     load.pressure = e.number("pressure");
-    load.facets = facets();
+    std::map<int, Vec6> wrench;  // of bodies, about their centres
+    std::vector<std::vector<int>> others;
+    for (const Facet& facet : facets()) {
+      std::vector<int> nodes = nodes_of(facet);
+      const Region& region = b.regions_[b.mesh_->mesh.region[facet.cell]];
+      if (region.fidelity != Fidelity::rigid) {
+        others.push_back(std::move(nodes));
+        continue;
+      }
+      const std::vector<Vec3> X = positions(nodes);
+      std::vector<Vec3> f(X.size());
+      pressure_force(load.pressure, X, X, f, nullptr);
+      Vec6& sum = wrench.try_emplace(region.body, Vec6::Zero()).first->second;
+      for (size_t a = 0; a < X.size(); ++a) sum.head<3>() += f[a], sum.tail<3>() += (X[a] - out.bodies[region.body].Xc).cross(f[a]);
+    }
+    for (const auto& [body, sum] : b.sum_over_ranks(wrench))
+      for (const bool turns : {false, true}) {
+        Load one = load;
+        one.kind = turns ? Load::Kind::body_torque : Load::Kind::body_force;
+        one.body = body, one.value = turns ? sum.tail<3>() : sum.head<3>(), one.follower = true;
+        out.part<Loads>().list.push_back(std::move(one));
+      }
+    load.kind = Load::Kind::pressure, load.facets = std::move(others);
   }
   void torque() {
     load.kind = Load::Kind::body_torque;

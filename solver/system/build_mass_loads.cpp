@@ -68,27 +68,17 @@ std::map<int, Vec3> Builder::forces_of_mass(const Entry& e, const std::function<
 
 /// Forces along one axis and of one sign have one resultant, at their centre, however the body turns.
 std::vector<Load> Builder::take_rigid_share(std::map<int, Vec3>& force, const Load& like) const {
-  struct Resultant {
-    std::array<int, 3> of;      // body, axis and sign
-    std::array<double, 4> sum;  // of force times position, and of forces
-  };
-  std::map<std::array<int, 3>, Eigen::Vector4d> sums;
-  const auto add = [&](const std::array<int, 3>& of, const Eigen::Vector4d& more) {
-    sums.try_emplace(of, Eigen::Vector4d::Zero()).first->second += more;
-  };
+  std::map<std::array<int, 3>, Eigen::Vector4d> sums;  // by body, axis and sign: of force times position, and of forces
   std::erase_if(force, [&](const auto& at) {
     const auto& [node, f] = at;
     const int body = out_->follower[node];
     if (body < 0 || out_->bodies[body].linear) return false;
-    for (int k = 0; k < 3; ++k) add({body, k, f[k] < 0}, f[k] * out_->X[node].homogeneous());
+    for (int k = 0; k < 3; ++k)
+      sums.try_emplace({body, k, f[k] < 0}, Eigen::Vector4d::Zero()).first->second += f[k] * out_->X[node].homogeneous();
     return true;
   });
-  std::vector<Resultant> mine;
-  for (const auto& [of, sum] : sums) mine.push_back({of, {sum[0], sum[1], sum[2], sum[3]}});
-  sums.clear();
-  for (const Resultant& one : comm_.gather(mine)) add(one.of, Eigen::Map<const Eigen::Vector4d>(one.sum.data()));
   std::vector<Load> loads;
-  for (const auto& [of, sum] : sums) {
+  for (const auto& [of, sum] : sum_over_ranks(sums)) {
     if (sum[3] == 0) continue;
     Load one = like;
     one.kind = Load::Kind::body_force, one.body = of[0];

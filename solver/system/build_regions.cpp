@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <unordered_set>
 
 #include "model/region_surface.hpp"
 #include "model/scaled_jacobian.hpp"
@@ -23,35 +22,44 @@ const char* const give_material = "give it with [region.NAME] material = \"...\"
 
 }  // namespace
 
-/// Nodes that a step asks for come first: those of nonlinear cells, and of every set (or linear region) whose name stands in the scene.
-/// The others follow their bodies where results want them.
+/// Nodes that a step asks for come first: those of nonlinear cells, and of every set (or linear region) that an entry names.  Joints,
+/// springs and most loads ask for no node of a rigid region: they act on its body.  The others follow their bodies where results want them.
 std::int64_t Builder::put_active_nodes_first() {
   const Mesh& mesh = mesh_->mesh;
-  std::vector<char> active(mesh.X.size(), 0), in_cell(mesh.X.size(), 0);
+  std::vector<char> active(mesh.X.size(), 0), in_cell(mesh.X.size(), 0), rigid(mesh.X.size(), 0);
   for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
     for (const std::int64_t i : mesh.cell(e)) {
       in_cell[i] = 1;
       if (mesh_->fidelity[mesh.region[e]] == Fidelity::nonlinear) active[i] = 1;
+      if (mesh_->fidelity[mesh.region[e]] == Fidelity::rigid) rigid[i] = 1;
     }
   for (size_t i = 0; i < active.size(); ++i)
     if (!in_cell[i]) active[i] = 1;
-  std::unordered_set<std::string_view> quoted;  // what stands between two quotes of one kind
-  const std::string_view text = scene_.text;
-  for (const char quote : {'"', '\''})
-    for (size_t from = text.find(quote); from != text.npos;) {
-      const size_t to = text.find(quote, from + 1);
-      if (to != text.npos) quoted.insert(text.substr(from + 1, to - from - 1));
-      from = to;
-    }
-  const auto is_named = [&](const std::string& name) {
-    const auto plain = [](unsigned char c) { return c > 31 && c < 127 && c != '"' && c != '\'' && c != '\\'; };
-    return !std::all_of(name.begin(), name.end(), plain) || quoted.contains(name);
+  std::map<std::string_view, bool> named;  // whether by what asks for nodes of rigid regions too
+  const auto takes_bodies = [](const Entry& e) {
+    return e.section == "joint" || e.section == "spring" || (e.section == "load" && e.kind != "torque" && e.kind != "line");
   };
+  std::set<std::string_view> sections;
+  for (const KindSchema& kind : scene_schema()) sections.insert(kind.section);
+  for (const std::string_view section : sections)
+    for (const Entry& e : scene_.entries(section))
+      for (const auto& [key, value] : e.values)
+        for (const std::string& text : value.texts) named[text] |= !takes_bodies(e);
   for (const std::string& name : mesh.all_names()) {
+    const auto it = named.find(name);
     const int region = mesh.find_region(name);
-    if (!is_named(name) || (region >= 0 && mesh_->fidelity[region] != Fidelity::linear)) continue;
-    for (const std::int64_t i : mesh_->nodes_of(name, "")) active[i] = 1;
+    if (it == named.end() || (region >= 0 && mesh_->fidelity[region] != Fidelity::linear)) continue;
+    for (const std::int64_t i : mesh_->nodes_of(name, ""))
+      if (it->second || !rigid[i]) active[i] = 1;
+    if (const auto facets = mesh.facet_sets.find(name); facets != mesh.facet_sets.end())
+      for (const Facet& f : facets->second)
+        if (mesh_->fidelity[mesh.region[f.cell]] != Fidelity::rigid)
+          for (const std::int64_t i : mesh.facet_nodes(f)) active[i] = 1;
   }
+  for (size_t b = 0; b < mesh.block_name.size(); ++b)
+    if (named.contains(mesh.block_name[b]))
+      for (size_t i = 0; i < active.size(); ++i)
+        if (mesh.block[i] == static_cast<std::int64_t>(b)) active[i] = 1;
   std::set<int> meet;  // rigid regions, and those that no text names: their surfaces meet others
   const auto take_sides = [&](const Entry& e, bool of_all) {
     for (const char* side : {"a", "b"})

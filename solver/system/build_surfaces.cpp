@@ -198,6 +198,13 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
       warn(e.place.text(),
            fmt::format("{}; {}", text,
                        pair.is_static ? "the first load step presses them apart" : "they begin without force, which comes as they slide"));
+    constexpr double enough = 0.1;  // of the depth
+    if (deep->sag > enough * deep->depth && (pair.is_static || scene_.table("time").text("start") == "equilibrium"))
+      warn(e.place.text(),
+           fmt::format(
+               "{}: {:.0f} % of the depth of {:.3g} m that it starts with is the sag of flat facets that face each other askew, and its "
+               "force is off by up to as much; let nodes of both lie opposite each other, or take finer or quadratic cells",
+               e.label(), 100 * std::min(1., deep->sag / deep->depth), deep->depth));
   }
 }
 

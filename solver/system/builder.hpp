@@ -162,6 +162,21 @@ class Builder {
   std::map<int, Vec3> forces_of_mass(const Entry& e, const std::function<Vec3(const Vec3&)>& acceleration) const;
   /// The loads on rigid bodies that forces of nodes which follow them make; these nodes are taken out of `force`.  Collective.
   std::vector<Load> take_rigid_share(std::map<int, Vec3>& force, const Load& like) const;
+  /// Collective.
+  template <class Key, int n>
+  std::map<Key, Eigen::Matrix<double, n, 1>> sum_over_ranks(const std::map<Key, Eigen::Matrix<double, n, 1>>& mine) const {
+    struct Item {
+      Key key;
+      std::array<double, n> value;
+    };
+    std::vector<Item> items;
+    for (const auto& [key, value] : mine) std::copy_n(value.data(), n, items.emplace_back(key).value.begin());
+    std::map<Key, Eigen::Matrix<double, n, 1>> out;
+    for (const Item& item : comm_.gather(items))
+      out.try_emplace(item.key, Eigen::Matrix<double, n, 1>::Zero()).first->second +=
+          Eigen::Map<const Eigen::Matrix<double, n, 1>>(item.value.data());
+    return out;
+  }
   /// How what acts on a set or region as a whole, or is measured there, is divided among local nodes; all ranks' sum is one.  Nodes of a
   /// set count alike, those of a region by its mass, so that it means the same at every fidelity.  Collective.
   std::vector<std::pair<int, double>> shares_of(const Found& found) const;

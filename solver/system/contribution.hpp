@@ -252,6 +252,16 @@ class Stateful {
   virtual void commit(const Config& /*q*/, const Config* /*v*/) {}
 };
 
+/// What is chosen within a step and not solved for: which facet a point meets; Newton's method asks for it.
+class Revising {
+ public:
+  /// Chooses again by an answer that Newton's method has converged to; true where the equations became others by it.  May be collective;
+  /// the answer need not be the same on all ranks.
+  virtual bool revise(const Stage& stage) = 0;
+  /// Whether it has anything to choose; the same on all ranks.
+  virtual bool chooses() const { return true; }
+};
+
 /// What turns as a whole: bodies, cells.
 class Turning {
  public:
@@ -301,7 +311,7 @@ class Cast {
  private:
   template <class... Roles>
   using Lists = std::tuple<std::vector<Roles*>...>;
-  Lists<Equations, Constraining, Prescribing, Jumping, Loading, Stateful, Turning, Observer, Clocked> lists_;
+  Lists<Equations, Constraining, Prescribing, Jumping, Loading, Stateful, Revising, Turning, Observer, Clocked> lists_;
 };
 
 }  // namespace hilo

@@ -4,12 +4,18 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "system/collocation.hpp"
 #include "system/facet.hpp"
 
 namespace hilo {
 
-std::string Loads::count() const { return fmt::format("{} loads", list.size()); }
+std::string Loads::count() const {
+  std::set<std::string_view> names;
+  for (const Load& load : list) names.insert(load.name);
+  return fmt::format("{} loads", names.size());
+}
 
 /// A load whose direction is inertial may take any beside a region that turns.
 void Loads::add_reference_forces(std::vector<NodalForces>& out) const {
@@ -58,22 +64,20 @@ void Loads::on_body(const Load& load, double factor, Pass& p) const {
   const Stage& s = p.s;
   const int b = load.body;
   const bool force = load.kind == Load::Kind::body_force;
-  const Vec3 f = acting(load, factor, s);
-  Mat3 K = Mat3::Zero();
-  if (force) {
-    p.body[b].head<3>() -= f;
-    p.body[b].tail<3>() -= (s.left->R[b] * load.arm).cross(f);
-    K = -s.slope * skew(f) * skew(s.end->R[b] * load.arm);
-  } else {
-    p.body[b].tail<3>() -= f;
-    if (load.follower) K = s.slope * skew(s.end->R[b] * load.value * factor);
-  }
+  const Vec3 f = acting(load, factor, s), arm = s.left->R[b] * load.arm;
+  p.body[b].tail<3>() -= force ? Vec3(arm.cross(f)) : f;
+  if (force) p.body[b].head<3>() -= f;
   p.scale(force ? f.norm() : f.norm() / points_.bodies[b].size);
-  if (p.K && points_.body_block[b] >= 0) {
-    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> K6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>::Zero();
-    K6.bottomRightCorner<3, 3>() = K;
-    p.K->add(points_.body_clique[b], K6.data());
+  if (!p.K || points_.body_block[b] < 0) return;
+  Eigen::Matrix<double, 6, 6, Eigen::RowMajor> K = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>::Zero();
+  const Mat3 turned = load.follower ? Mat3(s.slope * skew(s.end->R[b] * load.value * factor)) : Mat3::Zero();  // of -f, by a turn
+  if (force) {
+    K.topRightCorner<3, 3>() = turned;
+    K.bottomRightCorner<3, 3>() = skew(arm) * turned - s.slope * skew(f) * skew(s.end->R[b] * load.arm);
+  } else {
+    K.bottomRightCorner<3, 3>() = turned;
   }
+  p.K->add(points_.body_clique[b], K.data());
 }
 
 void Loads::on_facets(const Load& load, double factor, Pass& p) const {

@@ -93,9 +93,10 @@ void Points::place(Config& q) const {
 }
 
 void Points::mask_fixed(std::span<double> r) const {
-  for (size_t i = 0; i < X.size(); ++i)
-    for (int k = 0; k < 3; ++k)
-      if (node_block[i] >= 0 && fixed[i][k]) r[3 * node_block[i] + k] = 0;
+  for (const UnknownField& f : unknowns)
+    for (size_t k = 0; k < f.size() && f.held; ++k)
+      for (size_t i = 0; i < 3; ++i)
+        if ((*f.held)[f.item[k]][i]) r[3 * static_cast<size_t>(f.block(k)) + i] = 0;
 }
 
 std::vector<int> Points::blocks_of(std::span<const int> nodes) const {

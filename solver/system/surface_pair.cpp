@@ -205,6 +205,47 @@ double SurfacePair::least_gap(const Config& q) const {
   return least;
 }
 
+/// Within a facet that starts in the other side, how far the depth of its points differs, as far as the sag of flat facets explains it:
+/// length times turn over eight, of a curve that its neighbours follow; of quadratic ones what their triangles leave.  The largest [m].
+double SurfacePair::unevenness(const Config& q) const {
+  std::vector<double> sag[2];
+  for (int s = 0; s < 2; ++s) {
+    const auto& faces = side[s].faces;
+    std::vector<Vec3> normal, centre;
+    for (const ContactSurface::Face& face : faces) {
+      const auto x = [&](int a) -> const Vec3& { return q.x[face.node[a]]; };
+      const bool three = face.n % 3 == 0;
+      normal.push_back((three ? Vec3((x(1) - x(0)).cross(x(2) - x(0))) : Vec3((x(2) - x(0)).cross(x(3) - x(1)))).normalized());
+      centre.push_back(three ? Vec3((x(0) + x(1) + x(2)) / 3) : Vec3((x(0) + x(1) + x(2) + x(3)) / 4));
+    }
+    for (size_t f = 0; f < faces.size(); ++f) {
+      double& largest = sag[s].emplace_back(0);
+      for (int e = 0; e < (faces[f].n % 3 == 0 ? 3 : 4); ++e) {
+        const int g = faces[f].across[e];
+        if (g < 0) continue;
+        const double turn = std::acos(std::clamp(normal[f].dot(normal[g]), -1., 1.));
+        if (turn > std::numbers::pi / 4) continue;  // an edge
+        const double of_curve = (centre[g] - centre[f]).norm() * turn / 8;
+        largest = std::max(largest, faces[f].n > 4 ? of_curve / (facet_pieces * facet_pieces) : of_curve);
+      }
+    }
+  }
+  double out = 0;
+  for (int s = 0; s < 2; ++s)
+    for (size_t f = 0; f < side[s].faces.size(); ++f) {
+      const ContactSurface::Face& face = side[s].faces[f];
+      double low = 1e300, high = -1e300, explained = sag[s][f];
+      for (int k = face.first; k < face.first + face.n_points; ++k) {
+        const SurfacePoint& point = side[s].points[k];
+        if (point.now.face < 0) continue;
+        const double gap = gap_of(over(s, point, point.now, q.x));
+        low = std::min(low, gap), high = std::max(high, gap), explained = std::max(explained, sag[1 - s][point.now.face]);
+      }
+      if (low < 0) out = std::max(out, std::min(high - low, explained));
+    }
+  return out;
+}
+
 std::optional<SurfacePair::Deep> SurfacePair::deepest_start(const Config& q) {
   if (hangs) find_back_to_back(q.x);
   search(q, nullptr, 0);
@@ -214,6 +255,7 @@ std::optional<SurfacePair::Deep> SurfacePair::deepest_start(const Config& q) {
       if (point.now.face >= 0)
         if (const double depth = -gap_of(over(s, point, point.now, q.x)); depth > (out ? out->depth : 0))
           out = Deep{depth, point.cell, side[s].at(point, q.x)};
+  if (out && !itself) out->sag = unevenness(q);
   near_.clear();
   list_partners();
   for (ContactSurface& surface : side)  // nothing acts before there are pairs of facets in the matrix

@@ -70,6 +70,7 @@ class SurfacePair {
   struct Deep {
     double depth, cell;
     Vec3 at;
+    double sag = 0;  // by which the depth differs within a facet, as facets are flat [m]
   };
   std::optional<Deep> deepest_start(const Config& q);
   /// Over the points that face the other side, less what counts as touching [m]; 1e300: none does.
@@ -137,6 +138,7 @@ class SurfacePair {
   void add_tangent(Pass& p, int side, const SurfacePoint& point) const;
 
   const Points& points_;
+  double unevenness(const Config& q) const;
   std::vector<std::pair<int, int>> near_;   // facets of side 0 and 1, ascending
   std::vector<std::pair<int, int>> never_;  // of what hangs together: back to back in the reference, ascending
   std::vector<int> clique_;                 // of these

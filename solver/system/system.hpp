@@ -32,6 +32,7 @@ class System : public Points {
     auto part = std::make_unique<T>(std::forward<Args>(args)...);
     T& out = *part;
     cast_.add(out);
+    by_type_.emplace_back(&tag<T>, &out);
     parts_.push_back(std::move(part));
     return out;
   }
@@ -44,8 +45,8 @@ class System : public Points {
   /// The contribution of a type, for what is about that type alone.
   template <class T>
   T& part() {
-    for (const auto& part : parts_)
-      if (auto* found = dynamic_cast<T*>(part.get())) return *found;
+    for (const auto& [type, part] : by_type_)
+      if (type == &tag<T>) return *static_cast<T*>(part);
     throw Error("", "the system lacks a contribution", "", Exit::fault);
   }
   template <class T>
@@ -134,6 +135,9 @@ class System : public Points {
   bool moves_ = false;
   Layout points_;  // the layout without contributions
   Cast cast_;
+  template <class T>
+  static constexpr char tag = 0;                        // its address is the type's
+  std::vector<std::pair<const char*, void*>> by_type_;  // for `part`, which is asked at every step
 };
 
 /// Where the modes of linear regions are kept: `from` is taken instead of finding them, and must fit; where there is a `to`, what fits of

@@ -47,7 +47,7 @@ friction = [{name = "hinge", joint = "hinge", coefficient = 0.3, radius = 0.05, 
 stop = [{kind = "angle", name = "hinge", joint = "hinge", upper = -0.02, stiffness = 500, restitution = 0.4},
   {kind = "slide", name = "sleeve", joint = "sleeve", lower = 0.04, stiffness = 900, restitution = 0.6, rest_speed = 0.5}]
 motor = [{kind = "rotary", name = "sleeve", joint = "sleeve", rate = [-3, 5], torque = [7, -2], history = {t = [0, 1], value = [1, 2]}}]
-load = [{kind = "pressure", name = "air", on = "xmax", pressure = 3000},
+load = [{kind = "pressure", name = "air", on = "xmax", pressure = 3000}, {kind = "pressure", name = "below", on = "zmin", pressure = 2000},
   {kind = "torque", name = "follower", on = "top", torque = [5, -7, 3], follower = true},
   {kind = "force", name = "push", on = "side", force = [50, 20, -30], at = [0.3, 1.7, 1.2]}]
 motion = [{kind = "fixed", name = "held", on = "corner", components = ["x", "z"]},

@@ -238,6 +238,7 @@ TEST(LoadSteps, ABodyStandsOnThreeBalls) {
   EXPECT_EQ(slides.exit, 3) << slides.err;
   EXPECT_NE(slides.err.find("a part may slide where friction holds no more"), std::string::npos) << slides.err;
 }
+
 // Truth: Stribeck.  A ring of Z balls without play, each as stiff against either race: the ball at an angle psi from the load bears
 // 4 F/Z cos(psi), those above it nothing.  Friction alone keeps balls from rolling away.
 TEST(LoadSteps, ABallBearing) {
@@ -271,6 +272,40 @@ TEST(LoadSteps, ABallBearing) {
       EXPECT_NEAR(last(run, fmt::format("contact/{} {}", race, i)).head<3>().norm(),
                   4 * F / Z * std::max(0.0, std::cos(2 * std::numbers::pi * i / Z)), 1e-6 * F)
           << race << " " << i;
+}
+
+// Truth: Lame's pressure of two rings that overlap.  Flat facets whose nodes lie opposite each other bear it; those that face each other
+// askew do not, as their sag is as large as the overlap: the run says so.
+TEST(LoadSteps, APressFitOfFacetsThatFaceEachOtherAskewIsTold) {
+  constexpr double a = 0.03, b = 0.05, c = 0.07, E = 210e9, overlap = 2e-5, h = 0.005;
+  const double pressure = E * overlap / b * (b * b - a * a) * (c * c - b * b) / (2 * b * b * (c * c - a * a));
+  for (const int n : {16, 22}) {
+    BlockOptions rings[2];
+    for (BlockOptions& o : rings) {
+      const bool outer = &o == &rings[1];
+      o.regions = {outer ? "outer" : "inner"}, o.n[0] = 6, o.n[1] = outer ? n : 16;
+      o.low = Vec3(outer ? b - overlap / 2 : a, 0, 0), o.high = Vec3(outer ? c : b + overlap / 2, std::numbers::pi / 2, h);
+      o.map = [](const Vec3& x) { return Vec3(x[0] * std::cos(x[1]), x[0] * std::sin(x[1]), x[2]); };
+    }
+    Case place("contact");
+    place.use(together(block_mesh(rings[0]), block_mesh(rings[1])), {Fidelity::nonlinear, Fidelity::nonlinear});
+    std::string scene =
+        "material.steel = {E = 210e9, nu = 0.3, density = 7850}\nregion.\"*\" = {material = \"steel\"}\n"
+        "contact = [{name = \"fit\", a = \"inner\", b = \"outer\"}]\ntime = {analysis = \"static\", steps = 1}\n";
+    for (const char* part : {"inner", "outer"})
+      for (const auto& [set, along] : {std::pair("ymin", "y"), {"ymax", "x"}, {"zmin", "z"}})
+        scene +=
+            fmt::format("[[motion]]\nkind = \"fixed\"\nname = \"{0} {2}\"\non = \"{0}{1}\"\ncomponents = [\"{2}\"]\n", part, set, along);
+    place.write("scene.toml", scene);
+    const Ran ran = succeeded(place.run("hilo-solve scene.toml tags.h5 -o run.h5"));
+    const double force = last(Results(place / "run.h5"), "contact/fit")[0] / (pressure * b * h);
+    const bool told = ran.err.find("is the sag of flat facets that face each other askew") != std::string::npos;
+    EXPECT_EQ(told, n != 16) << ran.err;
+    if (n == 16)
+      EXPECT_NEAR(force, 1, 0.002);
+    else
+      EXPECT_GT(std::abs(force - 1), 0.1);
+  }
 }
 
 }  // namespace

@@ -49,6 +49,42 @@ TEST_P(RigidRegion, OfABoxHasTheMassCentreAndInertiaOfTheBox) {
   EXPECT_LT((got.moments - exact).norm(), 1e-12 * exact.norm());
 }
 
+/// A bar of 1 x 0.2 x 0.3 m that turns about the z axis at its corner, 60 kg, pushed by 300 Pa on its side of 1 x 0.3 m, seen for a second.
+struct PushedBar : SceneCase {
+  PushedBar(const std::string& push, Shape shape)
+      : SceneCase(solid(2e11, 0.3, 1000) + axial("revolute", "hinge", "ground", "block", Vec3::Zero(), Vec3::UnitZ()) + push +
+                  in_time(1, 1e-3) + solved_to(1e-12)) {
+    use(block_mesh({.shape = shape, .n = {4, 2, 2}, .high = {1, 0.2, 0.3}}), {Fidelity::rigid});
+  }
+  static constexpr double moment = 300 * 0.3 * 0.5, inertia = 60 * (1 + 0.04) / 3;  // at the start  [N m], [kg m^2]
+};
+
+// Truth: a pressure turns with what it pushes, so that the moment stays: angle = M t^2/(2 J).
+TEST_P(RigidRegion, IsTurnedByAPressureThatTurnsWithIt) {
+  const PushedBar c(load("pressure", "air", "ymin", "pressure = 300"), GetParam());
+  const Results r = c.solved();
+  const double angle = c.moment / c.inertia / 2;
+  EXPECT_NEAR(r.history("coordinate/hinge").bottomRows(1)(0, 1), angle, 1e-6 * angle);
+  EXPECT_NEAR(r.history("energy").bottomRows(1)(0, 0), c.moment * angle, 1e-6 * c.moment * angle);
+}
+
+// Truth: the direction of a traction, or of a force on a set, stays: J w^2/2 = M sin(angle).
+TEST_P(RigidRegion, IsTurnedByForcesWhoseDirectionStays) {
+  for (const std::string& push :
+       {load("traction", "wind", "ymin", "traction = [0, 300, 0]"), force("push", "ymin", {0, 90, 0}), load("force", "nodes", "edge", R"(
+force = [0, 45, 0]
+[set.edge]
+kind = "box"
+low = [0.999, -1, -1]
+high = [1.001, 0.001, 1])")}) {
+    const PushedBar c(push, GetParam());
+    const Results r = c.solved();
+    const double angle = r.history("coordinate/hinge").bottomRows(1)(0, 1);
+    EXPECT_GT(angle, 0.9);
+    EXPECT_NEAR(r.history("energy").bottomRows(1)(0, 0), c.moment * std::sin(angle), 1e-9 * c.moment) << push;
+  }
+}
+
 // Truth: a tetrahedron's second moment is V/20 (sum x_i x_i^T + (sum x_i)(sum x_i)^T); here of bent blocks of tetrahedra.
 TEST(RigidRegionOfTetrahedra, HasTheMassCentreAndInertiaOfItsCells) {
   for (const Shape shape : {Shape::tet4, Shape::tet10}) {
