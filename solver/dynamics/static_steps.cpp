@@ -128,17 +128,45 @@ class StaticSteps final : public Steps {
     NewtonOptions options = run_.newton;
     options.least_share = 0.03;  // a smaller step costs less
     LoadStep step{state.t, at_.done};
-    const auto solve = [&](const NewtonOptions& how) {
-      r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, false, how, &step);
+    const auto solve = [&](const NewtonOptions& how, LoadStep* from) {
+      r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, false, how, from);
       run_.report.iterations += r.iterations;
     };
-    solve(options);
-    if (!r.converged && system.traits().slides) {
+    const auto begin_again = [&] {
       reached.q = state.q, reached.lambda = state.lambda;
       system.commit(state.q), search(0);
+    };
+    Touching* const contact = touching(system);
+    // Soft contacts find what meets, then ever stiffer ones the answer.  What goes in deeper than a part of a cell may come out on another
+    // side: it begins stiffer.
+    const auto find_softly = [&] {
+      constexpr double deepest = 0.25;
+      for (const double softest : {1e-4, 1e-2, 1.}) {
+        begin_again();
+        LoadStep same{state.t, at_.done};
+        for (double most = softest;; most = most < 1 ? 100 * most : HUGE_VAL) {
+          contact->soften(most);
+          solve(options, most == softest ? &same : nullptr);
+          contact->soften(HUGE_VAL);
+          if (r.converged && most == HUGE_VAL) return;
+          system.commit(state.q);
+          r.converged = r.converged && contact->depth(reached.q) < deepest;
+          if (!r.converged) break;
+        }
+      }
+    };
+    const auto find = [&] { at_.softly ? find_softly() : solve(options, &step); };
+    find();
+    if (!r.converged && contact) {  // the other way, and from then on first
+      begin_again();
+      at_.softly = !at_.softly;
+      find();
+    }
+    if (!r.converged && system.traits().slides) {
+      begin_again();
       NewtonOptions along = options;
       along.searches = along.patient = true, along.max_iterations = std::max(options.max_iterations, 60);
-      solve(along);
+      solve(along, &step);
     }
     if (!r.converged && r.least_det.det > 0 && at_.step <= std::ldexp(1.0 / n_,
                                                                       -4)) {  // a sharp bend: held back by a mass that fades
@@ -240,6 +268,7 @@ class StaticSteps final : public Steps {
     long unstable_states = 0;
     std::vector<Jumped> jumps;   // told
     std::optional<Ahead> ahead;  // the nearest state that is not stable, or on another branch
+    bool softly = false;         // soft contacts find what meets, then ever stiffer ones the answer
   } at_;
   static constexpr int most_blocks = 30000;  // beyond, the count would cost more than the step
   std::optional<Unstable> unstable_;         // the step tried last

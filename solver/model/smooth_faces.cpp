@@ -33,8 +33,11 @@ Vec3 nearest(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
 Eigen::Vector3d circle(const std::vector<Eigen::Vector2d>& points) {
   Eigen::MatrixXd A(points.size(), 3);
   Eigen::VectorXd b(points.size());
-  for (size_t i = 0; i < points.size(); ++i)
-    A.row(static_cast<Eigen::Index>(i)) << points[i].x(), points[i].y(), 1, b[static_cast<Eigen::Index>(i)] = points[i].squaredNorm();
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    const Eigen::Vector2d& x = points[static_cast<size_t>(i)];
+    A.row(i) << x[0], x[1], 1;
+    b[i] = x.squaredNorm();
+  }
   const Eigen::Vector3d s = A.colPivHouseholderQr().solve(b);
   return {s[0] / 2, s[1] / 2, std::sqrt(std::max(0.0, s[2] + (s[0] * s[0] + s[1] * s[1]) / 4))};
 }

@@ -76,11 +76,26 @@ void Contacts::hold(const Config& q) {
   for (SurfacePair& pair : surfaces) pair.hold(q);
 }
 
+void Contacts::soften(double most) {
+  most_ = most;
+  for (SurfacePair& pair : surfaces) pair.most = most;
+}
+
+double Contacts::depth(const Config& q) const {
+  double deepest = 0;
+  each_pair([&](const ContactPair& pair) {
+    for (const ContactPoint& point : pair.points) deepest = std::max(deepest, -gap(pair, point, q) / point.cell);
+  });
+  for (const SurfacePair& pair : surfaces) deepest = std::max(deepest, pair.depth(q));
+  return points_.comm->max(deepest);
+}
+
 template <class T>
 PointForce<T> Contacts::force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
                               const Stage& s, bool fixed) const {
-  return is_static_ || settles(s) ? at_end(pair.shape, point.law.with_fixed(fixed), x1, way, point.u, touch(point), point.deep)
-                                  : over_step(pair.shape, point.law, x0, x1, way, point.u, {s.h, point.approach});
+  if (!is_static_ && !settles(s)) return over_step(pair.shape, point.law, x0, x1, way, point.u, {s.h, point.approach});
+  const double share = most_ < HUGE_VAL ? std::min(1., most_ * point.deep / point.cell) : 1;
+  return at_end(pair.shape, point.law.as(share, fixed), x1, way, point.u, touch(point), point.deep / share);
 }
 
 Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const {

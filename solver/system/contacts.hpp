@@ -44,6 +44,8 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   bool has_facets() const override;
   std::string apart(const Config& q) const override;
   void hold(const Config& q) override;
+  void soften(double most) override;
+  double depth(const Config& q) const override;
   void each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const override;
   /// Points that are past the border of a height field, on this rank.
   int outside(const ContactPair& pair, const Config& q) const;
@@ -105,6 +107,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   const bool is_static_;      // load steps: forces at their end
   Config about_;              // in small motions: the state
   Config committed_, begin_;  // of load steps: the state accepted last, and where the step began
+  double most_ = HUGE_VAL;    // of E over the depth of the cells, on the way to an answer
   std::string jumped_;        // what the step tried last went through
 };
 

@@ -197,6 +197,14 @@ std::optional<Vec3> SurfacePair::starts_inside(int s, const Config& q) const {
   return std::nullopt;
 }
 
+double SurfacePair::depth(const Config& q) const {
+  double deepest = 0;
+  for (int s = 0; s < 2; ++s)
+    for (const SurfacePoint& point : side[s].points)
+      if (point.now.face >= 0) deepest = std::max(deepest, -gap_of(over(s, point, point.now, q.x)) / point.cell);
+  return deepest;
+}
+
 double SurfacePair::least_gap(const Config& q) const {
   double least = 1e300;
   for (int s = 0; s < 2; ++s)

@@ -35,6 +35,7 @@ class SurfacePair {
   double margin = 0;       // [m]
   bool is_static = false;  // load steps: forces at their end, of the gap itself
   double factor = 1;       // of the stiffness
+  double most = HUGE_VAL;  // of E over the depth of the cells, on the way to an answer
   bool loses = false;      // by restitution
   bool hangs = false;      // both hang together: they may have nodes in common
   bool itself = false;     // both are one: side 0 has the points, side 1 the facets that they meet
@@ -64,6 +65,8 @@ class SurfacePair {
     double sum = 0;
   };
   Pressing force(const Stage& s) const;
+  /// Of the points that face the other side in the step at work, as a share of the cell.
+  double depth(const Config& q) const;
   /// Largest depth [m], and as a share of the cell, of what `state` is.
   std::pair<double, double> depth() const;
   /// The point that starts deepest in the other side; its depth [m], or nothing.
@@ -105,8 +108,9 @@ class SurfacePair {
   bool settles(const Stage& s) const { return !is_static && !s.conserving() && s.elapsed > 1e300; }
   /// By the end of a step alone, as load steps choose.
   bool at_end_alone() const { return is_static || settles_; }
+  double share() const { return std::min(1., most / factor); }
   /// The depth at which the pressure is the modulus of what lies behind [m].
-  double deep(const SurfacePoint& point) const { return point.cell / factor; }
+  double deep(const SurfacePoint& point) const { return point.cell / (factor * share()); }
   Positions begin(const Stage& s) const {
     if (!about_.empty()) return about_;
     if (settles(s)) return points_.start.x;

@@ -27,6 +27,10 @@ class Touching {
     Eigen::MatrixXd share;
     Eigen::VectorXd pressure, area;
   };
+  /// From now on none is stiffer than this share of E/l, the facet's own cell, on the way to an answer; HUGE_VAL: all as they are.
+  virtual void soften(double most) = 0;
+  /// Largest depth, as a share of the facet's cell.  Collective.
+  virtual double depth(const Config& q) const = 0;
   /// For each facet of this rank.
   virtual void each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const = 0;
 };

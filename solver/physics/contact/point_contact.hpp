@@ -30,8 +30,10 @@ struct PointLaw {
   T limit(const T& p) const {
     return value(p) > 0 ? T(friction / kt) * (fixed ? T(value(p)) : p) : T(0.0);
   }
-  PointLaw with_fixed(bool is_fixed) const {
+  /// On the way to an answer: a share of the stiffness; with or without the change of mu p.
+  PointLaw as(double share, bool is_fixed) const {
     PointLaw out = *this;
+    out.k *= share, out.hertz *= share, out.kt *= share;
     out.fixed = is_fixed;
     return out;
   }

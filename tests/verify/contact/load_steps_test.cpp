@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
 
+#include "base/shell_shape.hpp"
 #include "dynamics/kept_run.hpp"
 #include "succeeded.hpp"
 #include "verify/block_mesh.hpp"
@@ -272,6 +274,39 @@ TEST(LoadSteps, ABallBearing) {
       EXPECT_NEAR(last(run, fmt::format("contact/{} {}", race, i)).head<3>().norm(),
                   4 * F / Z * std::max(0.0, std::cos(2 * std::numbers::pi * i / Z)), 1e-6 * F)
           << race << " " << i;
+}
+
+// Truth: F = 48 E I w/L^3 of a beam whose ends slide over rollers, L less what these roll in by: 3 R w/L at either end.  The contact is 1e7
+// times as stiff as the strip bends.
+TEST(LoadSteps, AThinStripIsBentOverRollers) {
+  constexpr double E = 2.1e11, t = 1e-3, b = 0.02, R = 0.01, half = 0.08;
+  Mesh strip = block_mesh({.n = {40, 4, 1}, .low = Vec3(-0.1, 0, -t / 2), .high = Vec3(0.1, b, t / 2), .regions = {"strip"}});
+  std::ranges::fill(strip.shape, static_cast<std::uint8_t>(shell8));
+  add_node_set(strip, "mid", [](const Vec3& x) { return std::abs(x[0]) < 1e-9; });
+  Case place("contact");
+  place.use(strip, {Fidelity::nonlinear});
+  const auto run = [&](double w, double friction, int steps) {
+    std::string scene = fmt::format(
+        "material.steel = {{E = {}, nu = 0.3, density = 7850}}\nregion.\"*\" = {{material = \"steel\"}}\n"
+        "motion = [{{kind = \"translation\", name = \"down\", on = \"mid\", displacement = [0, 0, {}], history = {{t = [0, 1], value = [0, "
+        "1]}}}}]\n"
+        "time = {{analysis = \"static\", steps = {}}}\n",
+        E, -w, steps);
+    for (const char* side : {"left", "right"})
+      scene += fmt::format(
+          "[[obstacle]]\nkind = \"cylinder\"\nname = \"{0}\"\nat = [{1}, 0, {2}]\naxis = [0, 1, 0]\nradius = {3}\n"
+          "[[contact]]\nname = \"on the {0}\"\na = \"{0}\"\nb = \"zmin\"\nfriction = {4}\n",
+          side, side[0] == 'l' ? -half : half, -t / 2 - R, R, friction);
+    place.write("scene.toml", scene);
+    succeeded(place.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
+    EXPECT_LT(place.reported("newton_iterations"), 25 * steps) << w;
+    EXPECT_EQ(place.reported("cuts"), 0) << w;
+    const Results r(place / "run.h5");
+    return -last(r, "contact/on the left")[2] - last(r, "contact/on the right")[2];
+  };
+  const double w = 2e-3, L = 2 * half - 2 * R * 3 * w / (2 * half), theory = 48 * E * (b * t * t * t / 12) * w / (L * L * L);
+  EXPECT_NEAR(std::abs(run(w, 0, 2)), theory, 0.03 * theory);
+  run(0.03, 0.3, 10);
 }
 
 // Truth: Lame's pressure of two rings that overlap.  Flat facets whose nodes lie opposite each other bear it; those that face each other
