@@ -141,12 +141,14 @@ class StaticSteps final : public Steps {
     // side: it begins stiffer.
     const auto find_softly = [&] {
       constexpr double deepest = 0.25;
+      NewtonOptions how = options;
+      how.patient = true, how.max_iterations = std::max(options.max_iterations, 60);  // friction takes its time where all slides anew
       for (const double softest : {1e-4, 1e-2, 1.}) {
         begin_again();
         LoadStep same{state.t, at_.done};
         for (double most = softest;; most = most < 1 ? 100 * most : HUGE_VAL) {
           contact->soften(most);
-          solve(options, most == softest ? &same : nullptr);
+          solve(how, most == softest ? &same : nullptr);
           contact->soften(HUGE_VAL);
           if (r.converged && most == HUGE_VAL) return;
           system.commit(state.q);

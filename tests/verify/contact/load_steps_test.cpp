@@ -309,6 +309,36 @@ TEST(LoadSteps, AThinStripIsBentOverRollers) {
   run(0.03, 0.3, 10);
 }
 
+// Truth: two leaves that rub on each other bear F as two beams side by side, F L^3/(6 E I), but for what friction takes, mu t/L of it;
+// where loads only grow, the answer is that of any number of steps.
+TEST(LoadSteps, TwoLeavesRubOnEachOther) {
+  constexpr double E = 2.1e11, t = 1e-3, b = 0.02, L = 0.2, F = 4;
+  Mesh leaf[2];
+  for (int k = 0; k < 2; ++k) {
+    leaf[k] = block_mesh({.n = {20, 2, 1}, .low = Vec3(0, 0, k * t), .high = Vec3(L, b, (k + 1) * t), .regions = {k ? "up" : "low"}});
+    std::ranges::fill(leaf[k].shape, static_cast<std::uint8_t>(shell8));
+  }
+  Case place("contact");
+  place.use(together(leaf[0], leaf[1]), {Fidelity::nonlinear, Fidelity::nonlinear});
+  double tip[2];
+  for (const int k : {0, 1}) {
+    place.write(
+        "scene.toml",
+        fmt::format("material.steel = {{E = {}, nu = 0, density = 7850}}\nregion.\"*\" = {{material = \"steel\"}}\n"
+                    "contact = [{{name = \"c\", a = \"lowzmax\", b = \"upzmin\", friction = 0.2}}]\n"
+                    "motion = [{{kind = \"fixed\", name = \"1\", on = \"lowxmin\"}}, {{kind = \"fixed\", name = \"2\", on = \"upxmin\"}}]\n"
+                    "load = [{{kind = \"force\", name = \"tip\", on = \"upxmax\", force = [0, 0, {}]}}]\n"
+                    "probe = [{{name = \"tip\", on = \"upxmax\"}}]\ntime = {{analysis = \"static\", steps = {}}}\n",
+                    E, -F, k ? 4 : 2));
+    succeeded(place.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
+    EXPECT_EQ(place.reported("cuts"), 0);
+    tip[k] = 1.5 * t - last(Results(place / "run.h5"), "probe/tip")[2];
+  }
+  const double theory = F * L * L * L / (6 * E * b * t * t * t / 12);
+  EXPECT_NEAR(tip[0], theory, 0.01 * theory);
+  EXPECT_NEAR(tip[1], tip[0], 1e-9 * theory);
+}
+
 // Truth: Lame's pressure of two rings that overlap.  Flat facets whose nodes lie opposite each other bear it; those that face each other
 // askew do not, as their sag is as large as the overlap: the run says so.
 TEST(LoadSteps, APressFitOfFacetsThatFaceEachOtherAskewIsTold) {
