@@ -152,7 +152,8 @@ class StaticSteps final : public Steps {
           contact->soften(HUGE_VAL);
           if (r.converged && most == HUGE_VAL) return;
           system.commit(state.q);
-          r.converged = r.converged && contact->depth(reached.q) < deepest;
+          if (r.converged && contact->depth(reached.q) >= deepest)
+            r.converged = false, r.reason = "contacts that are soft on the way are pressed too deep";
           if (!r.converged) break;
         }
       }
