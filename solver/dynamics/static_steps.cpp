@@ -145,7 +145,7 @@ class StaticSteps final : public Steps {
       how.patient = true, how.max_iterations = std::max(options.max_iterations, 60);  // friction takes its time where all slides anew
       for (const double softest : {1e-4, 1e-2, 1.}) {
         begin_again();
-        LoadStep same{state.t, at_.done};
+        LoadStep same{state.t, at_.done};  // what soft contacts foresee says nothing of a jump
         for (double most = softest;; most = most < 1 ? 100 * most : HUGE_VAL) {
           contact->soften(most);
           solve(how, most == softest ? &same : nullptr);

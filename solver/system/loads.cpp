@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "system/collocation.hpp"
@@ -37,6 +38,11 @@ void Loads::add_reference_forces(std::vector<NodalForces>& out) const {
 }
 
 void Loads::number(Layout& layout) {
+  const auto is_held = [&](int node) { return node < std::ssize(points_.start.x); };
+  for (const Load& l : list)  // Builder::put_active_nodes_first has left it out
+    if (!std::ranges::all_of(l.nodes, is_held) ||
+        !std::ranges::all_of(l.facets, [&](const auto& f) { return std::ranges::all_of(f, is_held); }))
+      throw Error("", fmt::format("load \"{}\" acts on a node that follows a body unseen", l.name), "", Exit::fault);
   for (Load& l : list) {
     l.cliques.clear();
     for (const auto& facet : l.facets) l.cliques.push_back(layout.cliques.add(points_.blocks_of(facet), true));

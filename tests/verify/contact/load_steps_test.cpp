@@ -302,10 +302,10 @@ TEST(LoadSteps, AThinStripIsBentOverRollers) {
     EXPECT_LT(place.reported("newton_iterations"), 25 * steps) << w;
     EXPECT_EQ(place.reported("cuts"), 0) << w;
     const Results r(place / "run.h5");
-    return -last(r, "contact/on the left")[2] - last(r, "contact/on the right")[2];
+    return last(r, "contact/on the left")[2] + last(r, "contact/on the right")[2];
   };
   const double w = 2e-3, L = 2 * half - 2 * R * 3 * w / (2 * half), theory = 48 * E * (b * t * t * t / 12) * w / (L * L * L);
-  EXPECT_NEAR(std::abs(run(w, 0, 2)), theory, 0.03 * theory);
+  EXPECT_NEAR(run(w, 0, 2), theory, 0.03 * theory);
   run(0.03, 0.3, 10);
 }
 
@@ -332,6 +332,7 @@ TEST(LoadSteps, TwoLeavesRubOnEachOther) {
                     E, -F, k ? 4 : 2));
     succeeded(place.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
     EXPECT_EQ(place.reported("cuts"), 0);
+    EXPECT_LT(place.reported("newton_iterations"), 100 * (k ? 4 : 2));
     tip[k] = 1.5 * t - last(Results(place / "run.h5"), "probe/tip")[2];
   }
   const double theory = F * L * L * L / (6 * E * b * t * t * t / 12);
