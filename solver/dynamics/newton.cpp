@@ -49,9 +49,6 @@ double size_of(const System& s, std::span<const double> z) {
   return std::sqrt(s.comm->sum(sum));
 }
 
-namespace {
-
-/// Of a residual over increments, without rows where these end before them.
 double work_of(const System& s, const Residual& r, std::span<const double> step) {
   double work = 0;
   for (size_t k = 0; k < step.size() / 3; ++k) {
@@ -61,6 +58,8 @@ double work_of(const System& s, const Residual& r, std::span<const double> step)
   }
   return s.comm->sum(work);
 }
+
+namespace {
 
 /// What the residual left works over the step, and how far it leaves the rows open.
 void tell_what_is_left(const System& s, const Residual& r, const Unknown& u, NewtonReport& report) {

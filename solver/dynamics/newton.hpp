@@ -14,12 +14,11 @@ namespace hilo {
 struct NewtonOptions {
   double tolerance = 1e-10;  // residual over the largest force it sums; correction over the scene's length
   int max_iterations = 25;
-  bool patient = false;         // do not give up on slow contraction
-  bool always_chooses = false;  // what is chosen within a step is chosen in every iteration: where equilibrium is far
-  double reach = 1e3;           // largest correction, in lengths of the scene; a guess farther off may lead to another root
-  bool foresees = false;        // tangents have the stresses that the last correction foresaw, while corrections halve
-  bool searches = false;        // goes along each correction until forces work no further: for what slides in part
-  double least_share = 1e-3;    // of a damped correction; below it the guess is given up
+  bool patient = false;       // do not give up on slow contraction
+  double reach = 1e3;         // largest correction, in lengths of the scene; a guess farther off may lead to another root
+  bool foresees = false;      // tangents have the stresses that the last correction foresaw, while corrections halve
+  bool searches = false;      // goes along each correction until forces work no further: for what slides in part
+  double least_share = 1e-3;  // of a damped correction; below it the guess is given up
 };
 
 struct NewtonReport {
@@ -43,6 +42,8 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
 double relative_residual(const System& system, const Residual& r);
 /// The increments z as lengths [m], without multipliers: root of the sum of squares.
 double size_of(const System& system, std::span<const double> z);
+/// Work of a residual over increments, which may end before the rows [J].  Collective.
+double work_of(const System& system, const Residual& r, std::span<const double> step);
 /// Largest move of a point by the increments z, over the scene's length.
 double relative_correction(const System& system, std::span<const double> z);
 

@@ -16,6 +16,7 @@
 #include "dynamics/jump.hpp"
 #include "dynamics/linear_step.hpp"
 #include "dynamics/run_parts.hpp"
+#include "dynamics/soft_contacts.hpp"
 #include "dynamics/start.hpp"
 #include "system/load_path.hpp"
 #include "system/revising.hpp"
@@ -51,7 +52,7 @@ class PathSteps final : public Steps {
     at_.radius = std::sqrt(2.0) / n_;
   }
 
-  void archive(Archive& a) override { a("path", at_); }
+  void archive(Archive& a) override { a("path", at_, soft_.first); }
 
   void take() override {
     System& system = run_.system;
@@ -245,7 +246,7 @@ class PathSteps final : public Steps {
       u.start(system, from.q, moved), move(z);
       add_multipliers(system, r.sigma, z, lambda);
     }
-    to.so_far = so_far;
+    to.so_far = so_far, pace_ = iterations_;
     return look_at(u.q, lambda, p, to);
   }
   /// The state with q and lambda at the share p of the loads, its stability, and what the audit says; false, and `why_`.
@@ -271,7 +272,7 @@ class PathSteps final : public Steps {
     if (why_.empty()) why_ = run_.audit->look(from.q, to.state, {&taken_, 1}, report_, p);
     return why_.empty();
   }
-  /// Where points of contact come and go so that a step along the path does not converge: a load step, damped.
+  /// Where points of contact come and go so that a step along the path does not converge: a load step, damped, and from soft contacts.
   bool find_by_loads(Point& to) {
     give_up();
     const double p = std::min(1.0, at_.share + at_.radius / std::sqrt(2.0));
@@ -280,8 +281,22 @@ class PathSteps final : public Steps {
     NewtonOptions options = run_.newton;
     options.least_share = 0.03;  // as load steps
     LoadStep step{run_.state.t, at_.share};
-    report_ = equilibrium(run_.system, *run_.solver, q, lambda, p * end_, p, false, options, &step);
-    run_.report.iterations += iterations_ = report_.iterations;
+    const auto begin_again = [&] { give_up(), q = run_.state.q, lambda = run_.state.lambda; };
+    iterations_ = 0;
+    report_ = soft_.find(
+        options, begin_again,
+        [&](const NewtonOptions& how, SoftContacts::Turn turn) {
+          run_.system.commit(run_.state.q);
+          LoadStep same{run_.state.t, at_.share};  // what soft contacts foresee says nothing of a jump
+          NewtonReport r = equilibrium(run_.system, *run_.solver, q, lambda, p * end_, p, false, how,
+                                       !turn.first   ? nullptr
+                                       : soft_.first ? &same
+                                                     : &step);
+          iterations_ += r.iterations, run_.report.iterations += r.iterations;
+          return r;
+        },
+        q);
+    pace_ = most_iterations / 2;
     to.on.rise = at_.rise, to.so_far = at_.radius;
     if (!report_.converged) return why_ = report_.reason, false;
     const State& from = run_.state;
@@ -375,7 +390,7 @@ class PathSteps final : public Steps {
     at_.share = to.on.share, at_.below = to.on.below;
     at_.rise = at_.from_limit ? -std::copysign(1e-300, at_.rise) : to.on.rise;
     std::swap(run_.state, to.state);
-    at_.radius = std::min(std::sqrt(2.0) / n_, at_.radius * std::clamp(6.0 / std::max(1, iterations_), 0.5, 2.0));
+    at_.radius = std::min(std::sqrt(2.0) / n_, at_.radius * std::clamp(6.0 / std::max(1, pace_), 0.5, 2.0));
     at_.done = reach_ > 0 ? moved(run_.state.q) >= reach_ : at_.share >= 1 - 1e-12;
   }
 
@@ -409,7 +424,8 @@ class PathSteps final : public Steps {
     std::string turn;
     std::vector<Turn> turns;
   } at_;
-  int iterations_ = 0;
+  int iterations_ = 0, pace_ = 0;  // of the step tried last; as many as the length of the next one goes by
+  SoftContacts soft_{run_.system};
   std::string why_;
   NewtonReport report_;
   Taken taken_;

@@ -264,7 +264,7 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
   system.prescribe(q, t, ramp);
   Config zero = q;
   combine(zero, {{0, &q}});
-  double tau = options.always_chooses ? 0.005 : 0.05;  // of the pseudo mass M/tau^2, grows; small where parts are to meet
+  double tau = 0.05;  // of the pseudo mass M/tau^2, grows
   const auto stage_under = [&](const Config& at, double time, double factor) {
     Stage s = stage_at(at, time);
     s.a = &zero;
@@ -286,7 +286,6 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
       system, solver,
       [&](const Unknown& at) {
         const Stage s = stage(at.q);
-        if (o.always_chooses) revise(system, s);
         if (mechanism) tau = std::min(tau * 1.3, 20.0);
         return s;
       },

@@ -11,6 +11,7 @@
 #include "dynamics/held.hpp"
 #include "dynamics/jump.hpp"
 #include "dynamics/run_parts.hpp"
+#include "dynamics/soft_contacts.hpp"
 #include "dynamics/stability.hpp"
 #include "dynamics/start.hpp"
 #include "system/touching.hpp"
@@ -29,7 +30,7 @@ class StaticSteps final : public Steps {
       for (const History::Break& b : used.history.breaks()) breaks_.push_back(b.t / end_);
   }
 
-  void archive(Archive& a) override { a("static steps", at_); }
+  void archive(Archive& a) override { a("static steps", at_, soft_.first); }
 
   void take() override {
     System& system = run_.system;
@@ -133,38 +134,18 @@ class StaticSteps final : public Steps {
       run_.report.iterations += r.iterations;
     };
     const auto begin_again = [&] {
-      reached.q = state.q, reached.lambda = state.lambda;
       system.commit(state.q), search(0);
+      reached.q = state.q, reached.lambda = state.lambda;
     };
-    Touching* const contact = touching(system);
-    // Soft contacts find what meets, then ever stiffer ones the answer.  What goes in deeper than a part of a cell may come out on another
-    // side: it begins stiffer.
-    const auto find_softly = [&] {
-      constexpr double deepest = 0.25;
-      NewtonOptions how = options;
-      how.patient = true, how.max_iterations = std::max(options.max_iterations, 60);  // friction takes its time where all slides anew
-      for (const double softest : {1e-4, 1e-2, 1.}) {
-        begin_again();
-        LoadStep same{state.t, at_.done};  // what soft contacts foresee says nothing of a jump
-        for (double most = softest;; most = most < 1 ? 100 * most : HUGE_VAL) {
-          contact->soften(most);
-          solve(how, most == softest ? &same : nullptr);
-          contact->soften(HUGE_VAL);
-          if (r.converged && most == HUGE_VAL) return;
+    r = soft_.find(
+        options, begin_again,
+        [&](const NewtonOptions& how, SoftContacts::Turn turn) {
           system.commit(state.q);
-          if (r.converged && contact->depth(reached.q) >= deepest)
-            r.converged = false, r.reason = "contacts that are soft on the way are pressed too deep";
-          if (!r.converged) break;
-        }
-      }
-    };
-    const auto find = [&] { at_.softly ? find_softly() : solve(options, &step); };
-    find();
-    if (!r.converged && contact) {  // the other way, and from then on first
-      begin_again();
-      at_.softly = !at_.softly;
-      find();
-    }
+          LoadStep same{state.t, at_.done};  // what soft contacts foresee says nothing of a jump
+          solve(how, !turn.first ? nullptr : soft_.first ? &same : &step);
+          return r;
+        },
+        reached.q);
     if (!r.converged && system.traits().slides) {
       begin_again();
       NewtonOptions along = options;
@@ -271,8 +252,8 @@ class StaticSteps final : public Steps {
     long unstable_states = 0;
     std::vector<Jumped> jumps;   // told
     std::optional<Ahead> ahead;  // the nearest state that is not stable, or on another branch
-    bool softly = false;         // soft contacts find what meets, then ever stiffer ones the answer
   } at_;
+  SoftContacts soft_{run_.system};
   static constexpr int most_blocks = 30000;  // beyond, the count would cost more than the step
   std::optional<Unstable> unstable_;         // the step tried last
   bool examined_ = true;                     // whether it told

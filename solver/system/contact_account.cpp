@@ -47,13 +47,13 @@ Contacts::Did Contacts::advance(ContactPair& pair, const Stage& s) {
   for (ContactPoint& point : pair.points) {
     const Place at = place(pair, point, s);
     point.next = values(at.force.u);
+    if (const std::string why = gone_through(pair, point, at.x0, at.x1); !why.empty()) out.why = why;
     if (settles(s)) continue;
     if (point.law.loss > 0)
       point.next_approach =
           Approach{s.h, point.approach}.after(pair.shape.at(at.x0) - point.law.radius, pair.shape.at(at.x1) - point.law.radius);
     out.dissipated += at.force.dissipated;
     out.pressing += at.force.pressing, out.slid += at.force.pressing * at.force.slid;
-    if (const std::string why = gone_through(pair, point, at.x0, at.x1); !why.empty()) out.why = why;
   }
   return out;
 }
@@ -105,8 +105,8 @@ void Contacts::advance(const Stage& s) {
     double pressing = 0, slid = 0;
     for (ContactPair& pair : heap.near) {
       const Did did = advance(pair, s);
-      if (settles(s)) continue;
       tell(did.why);
+      if (settles(s)) continue;
       pressing += did.pressing, slid += did.slid, heap.next.dissipated += did.dissipated;
       pair.next = pair.sums, pair.next.add(did.pressing, did.slid);
       if (pair.next.impacts == pair.sums.impacts) continue;
@@ -118,8 +118,8 @@ void Contacts::advance(const Stage& s) {
   for (ContactPair& pair : list) {
     if (is_start(s) && !at_instant) break;
     const Did did = at_instant ? look_at_way(pair, s) : advance(pair, s);
-    if (settles(s)) continue;
     tell(did.why);
+    if (settles(s)) continue;
     sums.insert(sums.end(), {did.pressing, did.slid, did.dissipated, double(outside(pair, *s.e1))});
   }
   const Comm& comm = *points_.comm;
@@ -138,7 +138,7 @@ void Contacts::advance(const Stage& s) {
 }
 
 void Contacts::commit(const Config& q, const Config*) {
-  if (is_static_ && touches()) committed_ = q;
+  if (touches()) committed_ = q;
   if (plain)
     each_pair([&](ContactPair& pair) {
       for (ContactPoint& point : pair.points) point.last = measures(pair, position(pair, point, q), q);
@@ -151,6 +151,7 @@ void Contacts::settle(bool accepted) {
   each_pair([&](ContactPair& pair) {
     (accepted ? pair.sums : pair.next) = accepted ? pair.next : pair.sums;
     for (ContactPoint& point : pair.points) {
+      point.parts = false;
       (accepted ? point.u : point.next) = accepted ? point.next : point.u;
       (accepted ? point.approach : point.next_approach) = accepted ? point.next_approach : point.approach;
     }

@@ -25,6 +25,7 @@ struct ContactPoint {
   double approach = 0, next_approach = 0;  // speed at which the contact began; after the step tried last [m/s]
   Vec3 last = Vec3::Zero();                // measures of the state accepted last, where forces are those at an instant [m]
   HeldPoint held;                          // in small motions about a state
+  bool parts = false;                      // touches without pressure, and would be pulled in the step at work
   int clique = -1;
 };
 

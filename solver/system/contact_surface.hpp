@@ -46,6 +46,7 @@ struct SurfacePoint {
   FacetState state, now, next;  // accepted, of the step at work, and at its end
   HeldPoint held;               // in small motions about a state
   std::pair<int, int> left{};   // face and triangle that it had before in the step at work
+  bool parts = false;           // touches without pressure, and would be pulled in the step at work
 };
 
 /// Facets of n <= 8 nodes each.

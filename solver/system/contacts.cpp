@@ -38,6 +38,13 @@ bool Contacts::search(const Config& q, const Config* v, double h) {
 bool Contacts::revise(const Stage& stage) {
   bool changes = false;
   for (SurfacePair& pair : surfaces) changes |= pair.revise(stage);
+  if (holds() || !(is_static_ || settles(stage))) return changes;
+  each_pair([&](ContactPair& pair) {
+    for (ContactPoint& point : pair.points) {
+      if (!is_pulled(gap(pair, point, *stage.e1), gap(pair, point, begin(stage)), touch(point))) continue;
+      point.parts = changes = true;
+    }
+  });
   return changes;
 }
 
@@ -95,7 +102,7 @@ PointForce<T> Contacts::force(const ContactPair& pair, const ContactPoint& point
                               const Stage& s, bool fixed) const {
   if (!is_static_ && !settles(s)) return over_step(pair.shape, point.law, x0, x1, way, point.u, {s.h, point.approach});
   const double share = most_ < HUGE_VAL ? std::min(1., most_ * point.deep / point.cell) : 1;
-  return at_end(pair.shape, point.law.as(share, fixed), x1, way, point.u, touch(point), point.deep / share);
+  return at_end(pair.shape, point.law.as(share, fixed), x0, x1, way, point.u, touch(point), point.deep / share);
 }
 
 Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const {

@@ -27,7 +27,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   void number(Layout& layout) override;
   bool search(const Config& q, const Config* v, double h) override;
   bool revise(const Stage& stage) override;
-  bool chooses() const override { return !surfaces.empty(); }
+  bool chooses() const override { return touches(); }
   void evaluate(Pass& p) const override;
   void add_energy(const Config& q, const Config& v, Energy& sum) const override;
   void add_work(const Moment& m, Work& sum) const override;
@@ -92,12 +92,12 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
       for (const ContactPair& pair : heap.near) visit(pair);
   }
   /// Load steps begin where what touches holds [m].
-  static double touch(const ContactPoint& point) { return 1e-8 * point.cell; }
+  static double touch(const ContactPoint& point) { return point.parts ? 0 : 1e-8 * point.cell; }
   /// The beginning of the step.
   const Config& begin(const Stage& s) const {
-    return holds() ? about_ : settles(s) ? points_.start : is_static_ && !begin_.R.empty() ? begin_ : *s.e0;
+    return holds() ? about_ : (is_static_ || settles(s)) && !begin_.R.empty() ? begin_ : *s.e0;
   }
-  /// Whether a state of equilibrium is sought from which steps in time are to start: forces as of one load step from what is drawn.
+  /// Whether a state of equilibrium is sought from which steps in time are to start: forces as of load steps.
   bool settles(const Stage& s) const { return !is_static_ && !s.conserving() && s.elapsed > 1e300; }
   /// Whether motions are small ones about a state.
   bool holds() const { return !about_.R.empty(); }
@@ -106,7 +106,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   const Points& points_;
   const bool is_static_;      // load steps: forces at their end
   Config about_;              // in small motions: the state
-  Config committed_, begin_;  // of load steps: the state accepted last, and where the step began
+  Config committed_, begin_;  // the state accepted last; of load steps: where the step began
   double most_ = HUGE_VAL;    // of E over the depth of the cells, on the way to an answer
   std::string jumped_;        // what the step tried last went through
 };

@@ -214,20 +214,18 @@ bool SurfacePair::would_act(int s, const SurfacePoint& point, const FacetState& 
 
 bool SurfacePair::revise(const Stage& s) {
   if (!about_.empty()) return false;
+  const bool anew = settles(s) && !settles_;  // chosen so far as for a step in time
   settles_ = settles(s);
   if (is_static == s.conserving() && !settles_) return false;  // a start, whose choice is that of the step to come
-  const Positions x1 = s.e1->x, x0 = settles_ ? x1 : begin(s);
+  const Positions x0 = begin(s), x1 = s.e1->x;
   look(x0, x1);
   bool changes = false;
   each_listed([&](int k, SurfacePoint& point) {
+    const auto gap = [&](Positions x) { return gap_of(over(k, point, point.now, x)); };
+    if (at_end_alone() && point.now.face >= 0 && is_pulled(gap(x1), gap(x0), touch(point))) point.parts = changes = true;
     const FacetState now = begun(k, point, target_of(k, point, x0, x1), x0);
     const std::pair to{now.face, now.triangle}, from{point.now.face, point.now.triangle};
-    if (to == from || (to == point.left && from.first >= 0 && !settles_)) return;  // on the edge between two either will do
-    if (settles_ && from.first >= 0 && to.first >= 0) {  // chosen in every iteration: triangles side by side are not to take turns
-      const Vec3 x = side[k].at(point, x1);
-      const double was = beside(x, side[1 - k].triangle(from.first, from.second, x1)).distance;
-      if (was < beside(x, side[1 - k].triangle(to.first, to.second, x1)).distance + 1e-3 * margin) return;
-    }
+    if (!anew && (to == from || (to == point.left && from.first >= 0))) return;  // on the edge between two either will do
     point.left = from;
     changes = changes || would_act(k, point, point.now, x0, x1) || would_act(k, point, now, x0, x1);
     point.now = now;

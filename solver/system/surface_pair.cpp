@@ -57,18 +57,8 @@ OverTriangle<double> SurfacePair::over(int s, const SurfacePoint& point, const F
 
 std::string SurfacePair::advance(const Stage& s) {
   next = sums;
-  if (settles(s)) {  // the state that steps in time go on from
-    for (int k = 0; k < 2; ++k)
-      for (SurfacePoint& point : side[k].points) {
-        point.next = point.now;
-        point.next.past = FacetPast{.gap = 1e300};
-        if (point.now.face < 0) continue;
-        const FacetForce<double> f = force_of(k, point, s);
-        point.next.past.gap = gap_of(over(k, point, point.now, s.e1->x)), point.next.past.bent = f.bent;
-      }
-    return "";
-  }
-  if (is_static == s.conserving()) return "";
+  const bool settles = this->settles(s);  // then nothing is summed up
+  if (is_static == s.conserving() && !settles) return "";
   const Positions x0 = begin(s), x1 = s.e1->x;
   std::string why;
   const auto is_foreseen = [&](int i) {
@@ -95,7 +85,7 @@ std::string SurfacePair::advance(const Stage& s) {
       const FacetForce<double> f = force_of(k, point, s);
       point.next.past.gap = f.gap, point.next.past.bent = f.bent;
       point.next.past.approach = Approach{s.h, point.now.past.approach}.after(point.now.past.gap, f.gap);
-      point.next.past.offset = is_static ? 0 : gap_of(over(k, point, point.now, x1)) - f.gap;
+      point.next.past.offset = at_end_alone() ? 0 : gap_of(over(k, point, point.now, x1)) - f.gap;
       next.dissipated += f.dissipated, pressing += f.pressing, slid += f.pressing * f.slid;
       if (f.acts) return;
     }
@@ -110,7 +100,10 @@ std::string SurfacePair::advance(const Stage& s) {
       return;
     if (target_of(k, point, x0, x1).crossed) why = fmt::format("contact \"{}\": a point goes through a facet within one step", name);
   });
-  next.add(pressing, slid);
+  if (settles)
+    next = sums;
+  else
+    next.add(pressing, slid);
   return why;
 }
 
@@ -130,7 +123,7 @@ void SurfacePair::settle(bool accepted) {
   (accepted ? sums : next) = accepted ? next : sums;
   each_listed([&](int, SurfacePoint& point) {
     if (accepted) point.state = point.next;
-    point.now = point.next = point.state;
+    point.now = point.next = point.state, point.parts = false;
   });
 }
 

@@ -103,8 +103,8 @@ class SurfacePair {
   Target faced(int side, const SurfacePoint& point, const Target& met, const Vec3& p1, Positions x1) const;
   FacetState begun(int side, const SurfacePoint& point, const Target& target, Positions x0) const;
   /// Load steps begin where what touches holds [m].
-  double touch(const SurfacePoint& point) const { return is_static || settles_ ? 1e-8 * point.cell : 0; }
-  /// Whether a state of equilibrium is sought from which steps in time are to start: forces as of one load step from what is drawn.
+  double touch(const SurfacePoint& point) const { return (is_static || settles_) && !point.parts ? 1e-8 * point.cell : 0; }
+  /// Whether a state of equilibrium is sought from which steps in time are to start: forces as of load steps.
   bool settles(const Stage& s) const { return !is_static && !s.conserving() && s.elapsed > 1e300; }
   /// By the end of a step alone, as load steps choose.
   bool at_end_alone() const { return is_static || settles_; }
@@ -113,11 +113,8 @@ class SurfacePair {
   double deep(const SurfacePoint& point) const { return point.cell / (factor * share()); }
   Positions begin(const Stage& s) const {
     if (!about_.empty()) return about_;
-    if (settles(s)) return points_.start.x;
     return s.conserving() || begin_.empty() ? s.e0->x : begin_;
   }
-  /// What a point has of the past in a stage: nothing where equilibrium is sought.
-  FacetPast past_of(const SurfacePoint& point, const Stage& s) const { return settles(s) ? FacetPast{} : point.now.past; }
   template <class T>
   FacetForce<T> force(const SurfacePoint& point, const Stage& s, const OverTriangle<double>& z0, const OverTriangle<T>& z1) const;
   bool would_act(int side, const SurfacePoint& point, const FacetState& now, Positions x0, Positions x1) const;

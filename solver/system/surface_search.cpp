@@ -80,7 +80,7 @@ bool SurfacePair::search(const Config& q, const Config* v, double h) {
     near_ = std::move(wide);
     list_partners();
   }
-  each_listed([](int, SurfacePoint& point) { point.now = point.next = point.state, point.left = {-2, -2}; });
+  each_listed([](int, SurfacePoint& point) { point.now = point.next = point.state, point.left = {-2, -2}, point.parts = false; });
   look(q.x, foreseen_);
   each_listed([&](int s, SurfacePoint& point) { point.now = begun(s, point, target_of(s, point, q.x, foreseen_), q.x); });
   return changes;

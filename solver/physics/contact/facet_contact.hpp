@@ -191,8 +191,7 @@ FacetForce<T> about(const HeldPoint& held, const PointLaw& law, const OverTriang
   return out;
 }
 
-/// At the configuration z1 that a load step from z0 leads to: the gradient of the potential.  Where the gap is below `touch`, the law is
-/// taken as closed: what touches without pressure sticks at no slip.  A guess may be far deeper than any answer, `deep`; the tangent then
+/// At the configuration z1 that a load step from z0 leads to: the gradient of the potential, `touch` as of is_closed.  A guess may be far deeper than any answer, `deep`; the tangent then
 /// has no more of the stiffness of a turning normal than at that depth, as a matrix with all of it would not be definite.
 template <class T>
 FacetForce<T> at_end(const PointLaw& law, const OverTriangle<double>& z0, const OverTriangle<T>& z1, const FacetPast& past, double touch,
@@ -203,7 +202,7 @@ FacetForce<T> at_end(const PointLaw& law, const OverTriangle<double>& z0, const 
   const double lost = law.kt / 2 * (past.bent[0] * past.bent[0] + past.bent[1] * past.bent[1]);
   const Triple<T> n = unit(cross(z1.t1, z1.t2));
   out.gap = dot(n, z1.r) - T(past.offset);
-  if (value(out.gap) >= touch) return out.dissipated = lost, out;
+  if (value(out.gap) >= touch || !is_closed(value(out.gap), gap_of(z0) - past.offset, touch)) return out.dissipated = lost, out;
   std::array<T, 2> foot;
   FacetGradient<T> D = gap_gradient(z1, n, foot);
   if (value(out.gap) < -deep) slow_down(D, deep / -value(out.gap));

@@ -143,19 +143,24 @@ PointForce<T> over_step(const Distance& shape, const PointLaw& law, const Vec3& 
   return out;
 }
 
-/// At the measures x1 that a load step leads to: the gradient of the potential.  Where the gap is below `touch` [m], the law is taken as
-/// closed: what touches without pressure sticks at no slip.  A guess may be far deeper than any answer, `deep` [m]; the tangent then has no
-/// more of the stiffness of a turning normal than at that depth.
+/// Whether what has this gap at the end of a load step that began with the gap `before` is taken as closed: what touched, nearer than
+/// `touch`, is too, so that it holds and sticks without pressure, unless it parts.
+inline bool is_closed(double gap, double before, double touch) { return gap < 0 || (gap < touch && gap <= before + 1e-6 * touch); }
+/// Whether that pulls.
+inline bool is_pulled(double gap, double before, double touch) { return gap > 1e-4 * touch && is_closed(gap, before, touch); }
+
+/// At the measures x1 that a load step from x0 leads to: the gradient of the potential, `touch` as of is_closed [m].  A guess may be far
+/// deeper than any answer, `deep` [m]; the tangent then has no more of the stiffness of a turning normal than at that depth.
 template <class T>
-PointForce<T> at_end(const Distance& shape, const PointLaw& law, const Triple<T>& x1, const Triple<T>& way, const Vec3& u0, double touch,
-                     double deep) {
+PointForce<T> at_end(const Distance& shape, const PointLaw& law, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way, const Vec3& u0,
+                     double touch, double deep) {
   PointForce<T> out;
   const T zero(0.0);
   out.normal = out.tangential = out.u = {{zero, zero, zero}};
   T phi;
   shape(x1, phi, out.n);
   const T gap = phi - T(law.radius);
-  if (value(gap) >= touch) {
+  if (value(gap) >= touch || !is_closed(value(gap), shape.at(x0) - law.radius, touch)) {
     out.dissipated = law.kt / 2 * u0.squaredNorm();
     return out;
   }
