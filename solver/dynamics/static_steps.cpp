@@ -152,8 +152,7 @@ class StaticSteps final : public Steps {
       along.searches = along.patient = true, along.max_iterations = std::max(options.max_iterations, 60);
       solve(along, &step);
     }
-    if (!r.converged && r.least_det.det > 0 && at_.step <= std::ldexp(1.0 / n_,
-                                                                      -4)) {  // a sharp bend: held back by a mass that fades
+    if (!r.converged && r.least_det.det > 0 && at_.step <= std::ldexp(1.0 / n_, -4)) {  // a sharp bend: held back by a mass that fades
       reached.q = state.q, reached.lambda = state.lambda;
       system.commit(state.q);
       r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, true, options);

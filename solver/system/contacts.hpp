@@ -94,9 +94,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   /// Load steps begin where what touches holds [m].
   static double touch(const ContactPoint& point) { return point.parts ? 0 : 1e-8 * point.cell; }
   /// The beginning of the step.
-  const Config& begin(const Stage& s) const {
-    return holds() ? about_ : (is_static_ || settles(s)) && !begin_.R.empty() ? begin_ : *s.e0;
-  }
+  const Config& begin(const Stage& s) const { return holds() ? about_ : (is_static_ || settles(s)) && !begin_.R.empty() ? begin_ : *s.e0; }
   /// Whether a state of equilibrium is sought from which steps in time are to start: forces as of load steps.
   bool settles(const Stage& s) const { return !is_static_ && !s.conserving() && s.elapsed > 1e300; }
   /// Whether motions are small ones about a state.

@@ -191,8 +191,9 @@ FacetForce<T> about(const HeldPoint& held, const PointLaw& law, const OverTriang
   return out;
 }
 
-/// At the configuration z1 that a load step from z0 leads to: the gradient of the potential, `touch` as of is_closed.  A guess may be far deeper than any answer, `deep`; the tangent then
-/// has no more of the stiffness of a turning normal than at that depth, as a matrix with all of it would not be definite.
+/// At the configuration z1 that a load step from z0 leads to: the gradient of the potential, `touch` as of is_closed.  A guess may be far
+/// deeper than any answer, `deep`; the tangent then has no more of the stiffness of a turning normal than at that depth, as a matrix with
+/// all of it would not be definite.
 template <class T>
 FacetForce<T> at_end(const PointLaw& law, const OverTriangle<double>& z0, const OverTriangle<T>& z1, const FacetPast& past, double touch,
                      double deep) {
