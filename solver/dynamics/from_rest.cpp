@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/interrupt.hpp"
 #include "dynamics/linear_step.hpp"
 #include "dynamics/soft_contacts.hpp"
 #include "dynamics/start.hpp"
@@ -65,7 +66,7 @@ NewtonReport come_to_rest(RunParts& run) {
   const Config start = state.q;
   constexpr int most = 1000;
   constexpr double first = 0.01, longest = 20, least = 1e-9;  // [s]
-  constexpr int easy = 8;                                     // iterations
+  constexpr int easy = 8, most_iterations = 10000;
   NewtonReport report;
   int iterations = 0;
   Config q, way;  // of the last step
@@ -87,10 +88,10 @@ NewtonReport come_to_rest(RunParts& run) {
       if (tau == longest) return report;
       at_rest = true, tau = longest;  // a last one leaves least
     }
-    if (system.largest_difference(start, state.q) > options.reach * system.length) {
-      report.converged = false, report.reason = "what nothing holds leaves the scene";
-      return report;
-    }
+    const auto give_up = [&](const std::string& reason) { return report.converged = false, report.reason = reason, report; };
+    if (system.largest_difference(start, state.q) > options.reach * system.length) return give_up("what nothing holds leaves the scene");
+    if (iterations > most_iterations) return give_up(fmt::format("{} corrections do not end at rest", iterations));
+    if (system.comm->max(noted_signal().empty() ? 0 : 1) > 0) return give_up("a signal came");
     int taken = 0;
     const auto attempt = [&](const NewtonOptions& how, SoftContacts::Turn turn) {
       NewtonReport r = step_from_rest(run, tau, state.q, how, q, lambda);
