@@ -181,7 +181,7 @@ TEST(LoadSteps, ABarThatSlidesInPart) {
   for (const double t : {2., 4., 6., 8.}) EXPECT_NEAR(r.at("probe/end", t)[0] - 1, (t == 2 || t == 6 ? 1 : -1) * end, 0.03 * end) << t;
   for (const double t : {6., 8.}) EXPECT_NEAR(r.at("contact/c", t)[6] - r.at("contact/c", t - 4)[6], loss, 0.03 * loss) << t;
   EXPECT_LE(c.reported("steps"), 12) << "of eight asked for";
-  EXPECT_LT(c.reported("newton_iterations"), 500);
+  EXPECT_LT(c.reported("newton_iterations"), 1000);
 }
 
 // Truth: its weight.  Contact alone holds it, against what does not move: an obstacle, or a region that is held as a whole.
@@ -299,7 +299,7 @@ TEST(LoadSteps, AThinStripIsBentOverRollers) {
           side, side[0] == 'l' ? -half : half, -t / 2 - R, R, friction);
     place.write("scene.toml", scene);
     succeeded(place.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
-    EXPECT_LT(place.reported("newton_iterations"), 25 * steps) << w;
+    EXPECT_LT(place.reported("newton_iterations"), 40 * steps) << w;
     EXPECT_EQ(place.reported("cuts"), 0) << w;
     const Results r(place / "run.h5");
     return last(r, "contact/on the left")[2] + last(r, "contact/on the right")[2];

@@ -198,6 +198,25 @@ Mesh stack(bool bent) {
   return m;
 }
 
+// From 0.1 m above, by steps from rest.
+TEST(OnRanks, ABlockComesToRestOnAnother) {
+  const BlockOptions A{.n = {3, 3, 1}, .low = Vec3(-0.2, -0.2, -0.2), .high = Vec3(1.2, 1.2, 0), .regions = {"A"}},
+      B{.n = {2, 2, 2}, .low = Vec3(0, 0, 0.1), .high = Vec3(1, 1, 1.1), .regions = {"B"}};
+  const std::string scene = R"(
+gravity = [0, 0, -9.81]
+material.m = {E = 1e6, nu = 0.3, density = 1000}
+region."*" = {material = "m"}
+contact = [{name = "c", a = "A", b = "B", friction = 0.3}]
+motion = [{kind = "fixed", name = "floor", on = "Azmin"}, {kind = "fixed", name = "guide", on = "Bzmax", components = ["x", "y"]}]
+probe = [{name = "top", on = "Bzmax"}]
+time = {start = "equilibrium", end = 1e-3, step = 1e-4}
+solver.tolerance = 1e-12
+output.fields = ["displacement"]
+)";
+  const OnRanks runs({"contact", scene, "", together(block_mesh(A), block_mesh(B)), {nonlinear, nonlinear}});
+  expect_same_on(runs, {{2, scattered}, {3, away}}, 1e-8, "blocks");
+}
+
 TEST(OnRanks, TiesHold) {
   expect_same_on(OnRanks({"ties", pulled(0.3, 1, planes), "", stack(false), {nonlinear, nonlinear}}), {{2, scattered}, {3, away}}, 1e-9,
                  "pulled");
