@@ -129,7 +129,7 @@ void BallHeap::archive(Archive& a, const Comm& comm) {
   }
   if (!a.restores()) pairs = comm.of_first(pairs), states = comm.of_first(states), account = comm.of_first(account);
   a("heap " + name, account, pairs, states);
-  if (!is_mine) return;
+  if (!is_mine || !a.restores()) return;  // what is numbered stays
   near.clear(), which.clear();
   sums = account.front();
   for (size_t k = 0; 2 * k + 1 < pairs.size(); ++k) {

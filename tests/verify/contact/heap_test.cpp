@@ -111,6 +111,10 @@ TEST(Heap, GoesOnAndIsTheSameOnRanks) {
   c.solved(c.all, "half.h5", "", often + " --set time.end=0.04");
   succeeded(c.run("hilo-solve --quiet --restart half.h5 --accept --set time.end=0.1 " + often));
   EXPECT_LT(apart(whole, Results(c / "half.h5"), c.n), 1e-12);
+  double corrections[2];  // what is kept leaves pairs where they stand in the matrix
+  for (const bool kept : {false, true})
+    c.solved(c.all, "run.h5", "", kept ? often : ""), corrections[kept] = c.reported("newton_iterations");
+  EXPECT_EQ(corrections[0], corrections[1]);
 }
 
 TEST(Heap, RefusesWhatCannotBe) {
