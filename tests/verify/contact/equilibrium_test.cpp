@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -110,6 +112,39 @@ TEST(ContactEquilibrium, AColumnOfBallsFallsOver) {
   const Results r = c.results();
   for (const double z : {-0.8, 0.})
     EXPECT_NEAR(r.history(fmt::format("probe/at {}", z))(0, 2), -0.9 - (g + 0.001 * (-0.9 - z)) / 1e5, 1e-6) << z;
+}
+
+// Truth: the weight, at the start and after, whatever the parts are; next to nothing else holds the upper one.
+TEST(ContactEquilibrium, RandomPairsOfBlocksBearTheWeight) {
+  Dice dice(11);
+  const auto cells = [&](int least, int most) { return static_cast<int>(dice(least, most + 0.999)); };
+  for (int k = 0; k < 15; ++k) {
+    const double size = dice(0.6, 1.1), gap = std::array{0., 1e-4, 0.01, 0.1, 0.5}[k % 5], tilt = std::array{0., 0.05, 0.1}[k % 3];
+    const BlockOptions base{
+        .n = {cells(2, 5), cells(2, 5), cells(1, 2)}, .low = Vec3(-0.3, -0.3, -0.2), .high = Vec3(1.4, 1.4, 0), .regions = {"A"}};
+    const int across = cells(1, 3);
+    const BlockOptions block{.n = {across, across, cells(1, 2)},
+                             .high = Vec3(size, size, size),
+                             .map =
+                                 [=](const Vec3& x) {
+                                   const Vec3 c = Vec3::Constant(size / 2);
+                                   return Vec3(Eigen::AngleAxisd(tilt, Vec3::UnitX()) * (x - c) + c + Vec3(0, 0, gap + 0.6 * tilt * size));
+                                 },
+                             .regions = {"B"}};
+    Case c("contact");
+    using enum Fidelity;
+    c.use(together(block_mesh(base), block_mesh(block)), {k % 4 == 3 ? linear : nonlinear, std::array{nonlinear, linear, rigid}[k % 3]});
+    c.write("scene.toml", begin + fmt::format("material.m = {{E = {:.3g}, nu = 0.3, density = 1000}}\nregion.\"*\" = {{material = \"m\"}}\n"
+                                              "contact = [{{name = \"c\", a = \"A\", b = \"B\", friction = {:.2f}}}]\n"
+                                              "motion = [{{kind = \"fixed\", name = \"floor\", on = \"Azmin\"}}]\n"
+                                              "spring = [{{kind = \"bushing\", name = \"s\", b = \"Bzmax\", at = [{}, {}, {}], stiffness = "
+                                              "[10, 10, 0.001], angular_stiffness = [10, 10, 10]}}]\n",
+                                              std::pow(10, dice(6, 9)), dice(0.1, 0.5), size / 2, size / 2, size + gap));
+    succeeded(c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
+    const auto f = c.results().history("contact/c");
+    const double weight = 1000 * g * size * size * size;
+    for (const Eigen::Index row : {Eigen::Index(1), f.rows() - 1}) EXPECT_NEAR(f(row, 2), weight, 1e-5 * weight) << k << " row " << row;
+  }
 }
 
 // Truth: what is pulled by more than its weight leaves the floor, in load steps and from equilibrium; nothing sticks to it.
