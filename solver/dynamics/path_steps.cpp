@@ -52,7 +52,7 @@ class PathSteps final : public Steps {
     at_.radius = std::sqrt(2.0) / n_;
   }
 
-  void archive(Archive& a) override { a("path", at_, soft_.first); }
+  void archive(Archive& a) override { a("path", at_, soft_.begins_soft); }
 
   void take() override {
     System& system = run_.system;
@@ -289,9 +289,9 @@ class PathSteps final : public Steps {
           run_.system.commit(run_.state.q);
           LoadStep same{run_.state.t, at_.share};  // what soft contacts foresee says nothing of a jump
           NewtonReport r = equilibrium(run_.system, *run_.solver, q, lambda, p * end_, p, false, how,
-                                       !turn.first   ? nullptr
-                                       : soft_.first ? &same
-                                                     : &step);
+                                       !turn.first         ? nullptr
+                                       : soft_.begins_soft ? &same
+                                                           : &step);
           iterations_ += r.iterations, run_.report.iterations += r.iterations;
           return r;
         },

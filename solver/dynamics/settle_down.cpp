@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The start from equilibrium.
-// Where parts can touch, steps from rest lead there, so that nothing passes through anything.
+// The start from equilibrium.  Where parts can touch, steps from rest lead there (from_rest), so that nothing passes through anything.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>

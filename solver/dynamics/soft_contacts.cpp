@@ -10,11 +10,11 @@ namespace hilo {
 
 NewtonReport SoftContacts::find(const NewtonOptions& options, const std::function<void()>& begin_again, const Solve& solve,
                                 const Config& q) {
-  const auto find = [&] { return first ? softly(options, begin_again, solve, q) : solve(options, {true, true}); };
+  const auto find = [&] { return begins_soft ? softly(options, begin_again, solve, q) : solve(options, {true, true}); };
   NewtonReport report = find();
   if (report.converged || !touching(system_)) return report;
   begin_again();
-  first = !first;
+  begins_soft = !begins_soft;
   return find();
 }
 

@@ -20,7 +20,7 @@ class SoftContacts {
   /// guess and choices to where they were; `q` is where `solve` leaves positions.  Collective.
   NewtonReport find(const NewtonOptions& options, const std::function<void()>& begin_again, const Solve& solve, const Config& q);
 
-  bool first = false;  // what succeeded last
+  bool begins_soft = false;  // as what succeeded last did
 
  private:
   NewtonReport softly(const NewtonOptions& options, const std::function<void()>& begin_again, const Solve& solve, const Config& q);

@@ -30,7 +30,7 @@ class StaticSteps final : public Steps {
       for (const History::Break& b : used.history.breaks()) breaks_.push_back(b.t / end_);
   }
 
-  void archive(Archive& a) override { a("static steps", at_, soft_.first); }
+  void archive(Archive& a) override { a("static steps", at_, soft_.begins_soft); }
 
   void take() override {
     System& system = run_.system;
@@ -142,7 +142,7 @@ class StaticSteps final : public Steps {
         [&](const NewtonOptions& how, SoftContacts::Turn turn) {
           system.commit(state.q);
           LoadStep same{state.t, at_.done};  // what soft contacts foresee says nothing of a jump
-          solve(how, !turn.first ? nullptr : soft_.first ? &same : &step);
+          solve(how, !turn.first ? nullptr : soft_.begins_soft ? &same : &step);
           return r;
         },
         reached.q);
