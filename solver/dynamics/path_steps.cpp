@@ -326,32 +326,36 @@ class PathSteps final : public Steps {
       Way across{Numbers(way.z.size(), 0.0), 1};
       way.p = (1 - at_.share) / ahead;
       if (!find(way, ahead, across, to)) return why_;
-      if (changes(to)) approach(way, ahead, across, to);
-      return "";
+      return changes(to) ? approach(way, ahead, across, to) : "";
     }
     if (at_.rise * to.on.rise < 0 && !at_.from_limit) return limit(way, to);
     at_.from_limit = false;
-    if (changes(to)) approach(way, to.so_far, way, to);
-    return "";
+    return changes(to) ? approach(way, to.so_far, way, to) : "";
   }
   bool changes(const Point& to) const { return std::abs(to.on.below - at_.below) > 0 && !at_.after_turn; }
 
-  /// Where stability changes without a limit, the state behind that, which is `whole` ahead in a plane across, is moved up to it; where
-  /// none is found between, looked for behind that.
-  void approach(const Way& way, double whole, const Way& across, Point& to) {
-    double near = 0, far = whole;
+  /// Where stability changes without a limit, the state behind that, which is `whole` ahead in a plane across, is moved up to it: the
+  /// nearest state behind that is found a second time.  Why not, or "".
+  std::string approach(const Way& way, double whole, const Way& across, Point& to) {
+    double near = 0;
+    std::vector<double> behind{whole};
     for (int k = 0; k < 8; ++k) {
-      const double so_far = (near + far) / 2;
+      const double so_far = (near + behind.back()) / 2;
       Point between;
       give_up();
       const bool found = find(way, so_far, way, between);
       if (found && between.on.rise * at_.rise < 0) break;
-      (!found || between.on.below == at_.below ? near : far) = so_far;
+      if (found && changes(between))
+        behind.push_back(so_far);
+      else
+        near = so_far;
+    }
+    for (; behind.size() > 1; behind.pop_back()) {
+      give_up();
+      if (find(way, behind.back(), way, to) && changes(to)) return "";
     }
     give_up();
-    if (find(way, far, way, to) && to.on.below != at_.below) return;
-    give_up();
-    find(way, whole, across, to);
+    return find(way, whole, across, to) ? "" : why_;
   }
 
   /// The state where the share of the loads is largest or least, between here and one too far: where the rise is zero, by secants that keep
