@@ -112,7 +112,7 @@ void Judgement::find_base() {
   while (true) {
     levels = all.consistent(levels);
     const Candidate& c = of({levels});
-    a.base = a.reference = &c;
+    a.base = a.reference = a.beside = &c;
     if (c.failure.empty()) break;
     const Assignment before = levels;
     if (mend(c, levels) && all.consistent(levels) != before) continue;
@@ -184,21 +184,51 @@ bool Judgement::doubts(const Candidate& c, Assignment& levels) {
   return levels != before;
 }
 
-/// The base and what cells change of it, by a run of each at twice the step, at half the price of cells; none where that would not do: the
-/// base's own step is to be known as small, and what cells change too.
+/// A model and what cells change of it, by a run of each at twice the step, at half the price of cells.  The model is the base, or where a
+/// whole run says that cells change too much of it, the base with the first few regions nonlinear, those in most doubt first.  None where
+/// that would not do: the model's own step is to be known as small, and what cells change too.
 const Candidate* Judgement::by_twice(const Request& cells) {
   constexpr double most_step = 0.3, most_change = 0.9;  // of a tolerance
   if (!is_measured_method() || !may_be_twice() || o.check == Check::always) return nullptr;
   const Candidate& before = all.of({a.base->levels, 2, cells.end});
   if (difference(before, *a.base) > 3 * most_step) return nullptr;
   const Candidate& after = all.of({cells.levels, 2, cells.end});
-  if (difference(after, before) > most_change) return nullptr;
-  Candidate& made = a.made.emplace_back(after);
-  for (size_t k = 0; k < made.values.size(); ++k) {
-    made.values[k].value += a.base->values[k].value - before.values[k].value;
-    made.values[k].allowed = a.base->values[k].allowed;
+  const auto made = [&](const Candidate& model, const Candidate& at_twice) {
+    a.beside = &model;
+    Candidate& out = a.made.emplace_back(after);
+    for (size_t k = 0; k < out.values.size(); ++k) {
+      out.values[k].value += model.values[k].value - at_twice.values[k].value;
+      out.values[k].allowed = model.values[k].allowed;
+    }
+    return &out;
+  };
+  if (difference(after, before) <= most_change) return made(*a.base, before);
+  if (cells.end != 0 || !after.failure.empty()) return nullptr;
+  Assignment levels = a.base->levels;
+  for (const size_t r : sorted([&](size_t region) { return doubt(region); })) {
+    levels[r] = cells.levels[r];
+    const Request model{all.consistent(levels)}, at_twice{model.levels, 2};
+    if (model.levels == a.base->levels || needs_cells_beside(model.levels, cells.levels)) continue;
+    if (model.levels == cells.levels || all.price(model) > 0.7 * all.price(cells)) break;
+    const Candidate& twice = all.of(at_twice);
+    if (!twice.failure.empty() || difference(after, twice) > most_change) continue;
+    const Candidate& once = of(model);
+    return !once.failure.empty() || difference(twice, once) > 3 * most_step ? nullptr : made(once, twice);
   }
-  return &made;
+  return nullptr;
+}
+
+/// Did a run at twice the step, beside the reference's, say that a model does not answer as the reference does?
+bool Judgement::is_off_at_twice(const Assignment& levels) {
+  const Request mine{all.consistent(levels), 2, a.reference->end}, its{a.reference->levels, 2, a.reference->end};
+  return all.knows(mine) && all.knows(its) && difference(all.of(its), all.of(mine)) > 1;
+}
+
+/// Is a region of `cells` not yet one of `levels` that is too far off to be linear?
+bool Judgement::needs_cells_beside(const Assignment& levels, const Assignment& cells) const {
+  for (size_t r = 0; r < n; ++r)
+    if (levels[r] != cells[r] && doubt(r) > never_linear) return true;
+  return false;
 }
 
 /// The base with cells where its linear strains are in doubt, as far as quantities have their values.
@@ -224,6 +254,7 @@ void Judgement::find_reference() {
       break;
     }
     if (runs) a.reference = &c;
+    if (runs && !twice) a.beside = &c;
     if (early && (!runs || difference(*a.base, c) > 0.5)) {  // nor are the instants those of the base
       early = false, window_ = 0;
       continue;

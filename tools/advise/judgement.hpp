@@ -44,8 +44,11 @@ class Judgement {
   double step_over(size_t k) const { return over(a.step[k], a.reference->values[k].allowed); }
   /// Of a model that is not the reference: a raw peak that is too large stays so.
   Candidates::Beyond beyond() const;
+  bool is_off_at_twice(const Assignment& levels);
   double doubt(size_t r) const { return doubt_.contains(r) ? doubt_.at(r) : 0; }
   bool is_touched(size_t r) const { return touched_.contains(r); }
+
+  static constexpr double never_linear = 15;  // tolerances: regions that could be linear had doubts of up to 12
 
   Candidates& all;
   const SearchOptions& o;
@@ -59,6 +62,7 @@ class Judgement {
   void find_reference();
   bool doubts(const Candidate& c, Assignment& levels);
   const Candidate* by_twice(const Request& cells);
+  bool needs_cells_beside(const Assignment& levels, const Assignment& cells) const;
   bool is_measured_method() const;
   bool mend(const Candidate& c, Assignment& levels);
   double window_of(const Candidate& c) const;

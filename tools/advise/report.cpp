@@ -107,6 +107,10 @@ std::string what_is_known(const Candidates& all, const Advice& a) {
   std::string modes;
   if (a.modes.empty() && a.modes_at_most > 0 && a.modes_at_most < 1)
     modes = fmt::format("; what its modes lack of the strain may change {:.2g} of it", a.modes_at_most);
+  else if (a.modes.empty() && a.modes_at_most == 0 &&
+           std::ranges::count(a.chosen->levels, Level::rigid) + std::ranges::count(a.chosen->levels, Level::nonlinear) <
+               std::ssize(a.chosen->levels))
+    modes = "; linear strains hold what modes leave out";
   std::string mesh = a.mesh.empty() ? "; the error of the mesh is unknown (--finer)" : "";
   for (size_t k = 0; k < a.mesh.size(); ++k)
     if (const QuantityValue& v = a.reference->values[k]; std::abs(a.mesh[k]) > v.allowed)

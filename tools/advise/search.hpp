@@ -20,6 +20,7 @@ struct SearchOptions {
 /// What decided, and what of it is known.
 struct Advice {
   const Candidate *base = nullptr, *reference = nullptr, *chosen = nullptr;  // reference: the base, or it with some regions nonlinear
+  const Candidate* beside = nullptr;  // what the reference was made from, where it is no run; else the reference
   // parts of the error of the chosen model by quantity, each in its unit; empty where that is not known
   std::vector<double> step;                    // what a step of none would change
   bool is_by_half = false;                     // is that known by half the step?

@@ -60,7 +60,8 @@ bool Judgement::is_known_by_twice(double off) {
     a.step.assign(a.reference->values.size(), 0);
   }
   if (!may_be_twice()) return false;
-  const Candidate& twice = all.of({a.reference->levels, 2, end_beside(*a.reference)});
+  const Request whole{a.reference->levels, 2, a.reference->end};
+  const Candidate& twice = all.of(all.knows(whole) ? whole : Request{whole.levels, 2, end_beside(*a.reference)});
   if (!twice.failure.empty()) return false;
   const std::vector<double> change = part(twice, *a.reference, 1. / 3);
   for (size_t k = 0; k < change.size(); ++k)
@@ -78,7 +79,7 @@ void Judgement::find_step() {
   };
   const double off = difference(*a.base, *a.reference);
   if (off < 1 ? by_half(*a.base) : is_known_by_twice(off)) return;
-  if (!by_half(*a.reference)) refuse_step();
+  if (!by_half(*a.beside)) refuse_step();
 }
 
 void Judgement::refuse_step() const {
