@@ -5,7 +5,8 @@
 A command is `make -C FOLDER ...`, `ctest ... -R NAME`, or a script below data/ or tests/ with its arguments, in backticks or in a block of
 code.  REPO and BIN stand for the repository and its tools.  All run in a copy of the tracked files below build/headlines, with the tools of
 build/, so that nothing that was made before counts.  The table and the logs lie there too; a command that went through with the same tools
-is not run again, so that the hours it takes may be spent in pieces.
+is not run again, so that the hours it takes may be spent in pieces.  The suite comes first: commands whose tests it passed are seen by it,
+as are several targets of a Makefile where each of them went through alone.
 
   headlines.py REPO BUILD                     all of them
   headlines.py REPO BUILD --only "L soft"     those whose line has one of these words (ONLY="L soft"), also if they went through before
@@ -29,6 +30,7 @@ import time
 LIMITS = {"make -C tests": 3 * 3600, "make -C data/firing L": 2 * 3600, "make -C data/stability": 3 * 3600, "make -C data/charts": 3 * 3600,
           "make -C data/scaling": 3 * 3600, "make -C tests faults": 3 * 3600, "make -C tests ranks": 3 * 3600,
           "make -C tests bench-growth": 6 * 3600, "make -C tests bench-linear": 3 * 3600}
+SUITE = "make -C tests"
 LEFT_OUT = {"make -C tests headlines": "this one", "make -C tests sanitize": "a day on two cores", "make -C tests package": "as root, from bare Debian",
             "make -C data/NAME": "a place holder"}
 SHORTER = {"make -C tests fuzz": ["SECONDS=2"]}  # as long as one likes: that it builds and begins
@@ -74,12 +76,21 @@ def exists(command, repo, build):
     return "" if os.access(there, os.X_OK) or (len(words) == 1 and os.path.exists(there)) else "no such script"
 
 
+def tracked(repo, *below):
+    names = subprocess.run(["git", "ls-files", "-z", *below], cwd=repo, capture_output=True, check=True).stdout.decode().split("\0")
+    return [n for n in names if n and os.path.lexists(os.path.join(repo, n))]
+
+
+def digest(repo, *below):
+    """Of the tracked files below these, as they are."""
+    return hashlib.sha256(b"".join(n.encode() + open(os.path.join(repo, n), "rb").read() for n in tracked(repo, *below))).hexdigest()[:12]
+
+
 def copy_of(repo, folder):
     """The tracked files as they are, and build/ as a link."""
     tree = os.path.join(folder, "tree")
     shutil.rmtree(tree, ignore_errors=True)
-    names = subprocess.run(["git", "ls-files", "-z"], cwd=repo, capture_output=True, check=True).stdout.decode().split("\0")
-    for name in filter(lambda n: n and os.path.lexists(os.path.join(repo, n)), names):
+    for name in tracked(repo):
         os.makedirs(os.path.dirname(os.path.join(tree, name)), exist_ok=True)
         shutil.copy2(os.path.join(repo, name), os.path.join(tree, name), follow_symlinks=False)
     os.symlink(os.path.dirname(folder), os.path.join(tree, "build"))
@@ -111,6 +122,24 @@ def run(command, tree, build, limit, log):
     return code, time.time() - began
 
 
+def log_of(command, folder):
+    return os.path.join(folder, re.sub(r"[^\w.=-]+", "_", command)[:120] + ".log")
+
+
+def seen_by(command, folder, build, done):
+    """The commands that went through and together did what this one does, or nothing."""
+    words = shlex.split(command)
+    if words[0] == "ctest":
+        if SUITE not in done:
+            return ""
+        passed = set(re.findall(r"Test +#\d+: (\S+) \.*\s*(?:Passed|\*\*\*Not Run \(Disabled)", open(log_of(SUITE, folder), errors="replace").read()))
+        named = re.findall(r"Test +#\d+: (\S+)", subprocess.run(["ctest", "--test-dir", build, "-N", "-R", words[words.index("-R") + 1]],
+                                                                capture_output=True, text=True, timeout=60).stdout)
+        return SUITE if named and passed.issuperset(named) else ""
+    alone = [" ".join(words[:3] + [target]) for target in words[3:]] if words[:2] == ["make", "-C"] and not re.search("[-=]", " ".join(words[3:])) else []
+    return ", ".join(alone) if len(alone) > 1 and all(c in done for c in alone) else ""
+
+
 def last_line(log):
     lines = [line.strip() for line in open(log, errors="replace") if line.strip()]
     return lines[-1][:120].replace("\t", " ") if lines else ""
@@ -138,26 +167,31 @@ def main():
         return 0
     folder = os.path.join(build, "headlines")
     os.makedirs(folder, exist_ok=True)
-    tools = hashlib.sha256(b"".join(open(p, "rb").read() for p in sorted(glob.glob(build + "/bin/hilo-*")))).hexdigest()[:12]
+    tools = digest(repo, "solver", "post", "tools", "CMakeLists.txt")  # not of the programs, which hold the name of the commit
     table, done = os.path.join(folder, "table.tsv"), {}
     if os.path.exists(table):
         done = {row["command"]: row for row in csv.DictReader(open(table), delimiter="\t")}
     tree = copy_of(repo, folder)
-    for command in chosen:
-        before = done.get(command)
-        if before and before["exit"] == "0" and before["tools"] == tools and not only:
+    went_through = {c for c, row in done.items() if row["exit"] == "0" and row["tools"] == tools}
+    for command in sorted(chosen, key=lambda c: (c != SUITE, len(shlex.split(c)) > 4)):
+        if command in went_through and not only:
             continue
-        limit = o.limit or LIMITS.get(command, 3600)
-        log = os.path.join(folder, re.sub(r"[^\w.=-]+", "_", command)[:120] + ".log")
-        print(f"{command} (at most {limit:g} s) ...", flush=True)
-        code, seconds = run(command, tree, build, limit, log)
+        by = "" if only else seen_by(command, folder, build, went_through)
+        log, code, seconds = log_of(command, folder), 0, 0.0
+        if not by:
+            limit = o.limit or LIMITS.get(command, 3600)
+            print(f"{command} (at most {limit:g} s) ...", flush=True)
+            code, seconds = run(command, tree, build, limit, log)
         done[command] = {"command": command, "page": named[command], "exit": str(code), "seconds": f"{seconds:.1f}", "tools": tools,
-                         "when": datetime.datetime.now().isoformat(timespec="minutes"), "last": last_line(log)}
+                         "when": datetime.datetime.now().isoformat(timespec="minutes"), "last": "seen by " + by if by else last_line(log)}
+        if code == 0:
+            went_through.add(command)
         with open(table + ".new", "w", newline="") as f:
             rows = csv.DictWriter(f, list(done[command]), delimiter="\t")
             rows.writeheader(), rows.writerows(done.values())
         os.replace(table + ".new", table)
-        print(f"  exit {code} after {seconds:.1f} s", flush=True)
+        if not by:
+            print(f"  exit {code} after {seconds:.1f} s", flush=True)
     print(f"\n{'exit':>4} {'seconds':>8}  command")
     for command in chosen:
         row = done[command]
