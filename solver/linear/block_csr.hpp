@@ -17,8 +17,8 @@ class BlockCsr {
   void add_part(int clique, int row, int column, int n, const double* K);
   void add_diagonal(int block, const double d[3]);
 
-  /// y := A x.
-  void multiply(const double* x, double* y) const;
+  /// y := A x, and the sums of the absolute values of the terms of each row.
+  void multiply(const double* x, double* y, double* sums = nullptr) const;
 
   int n() const { return 3 * n_blocks(); }
   int n_blocks() const { return static_cast<int>(block_start_.size()) - 1; }
@@ -44,6 +44,7 @@ class BlockCsr {
  private:
   const Cliques* cliques_ = nullptr;
   std::vector<int> block_start_{0}, columns_, row_start_, column_, position_, diagonal_;
+  int longest_ = 0;  // neighbours of a block
   std::vector<size_t> clique_position_;
   std::vector<double> values_;
 };

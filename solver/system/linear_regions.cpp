@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "linear/lapack.hpp"
 #include "system/collocation.hpp"
 #include "system/mode_forces.hpp"
 
@@ -15,6 +16,15 @@ namespace hilo {
 namespace {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // of Q, or of what is like it
+
+/// A B, or A^T B, by BLAS as in linear/products.
+Rows times(const Eigen::MatrixXd& A, const Rows& B, char transposed = 'N') {
+  const auto m = static_cast<int>(A.rows()), n = static_cast<int>(A.cols());
+  Rows out(transposed == 'T' ? n : m, 3);
+  lapack::multiply(transposed, m, n, 1., A.data(), m, B.data(), static_cast<int>(B.rows()), 0., out.data(), static_cast<int>(out.rows()),
+                   3);
+  return out;
+}
 
 /// The coordinates of a region: centre, directors, products of its modes.
 Rows rows_of(const Modes& m, const Config& q) {
@@ -40,7 +50,7 @@ void add_inertia_tangent(const Eigen::MatrixXd& A, const Modes& m, const Stage& 
   const Rows Ql = rows_of(m, *s.left);
   Rows Q1 = rows_of(m, *s.end);
   Q1.row(0).setZero();  // turns leave the centre
-  const Rows W = A * Q1;
+  const Rows W = times(A, Q1);
   const auto n = static_cast<Eigen::Index>(F.rows());
   K.topLeftCorner<3, 3>().diagonal().array() += A(0, 0);
   K.block<3, 3>(0, 3) -= skew(row(W, 0));
@@ -51,7 +61,7 @@ void add_inertia_tangent(const Eigen::MatrixXd& A, const Modes& m, const Stage& 
   }
   K.block<3, 3>(3, 0) += skew(arm);
   // A seen through directors: B_rj = sum_l A_r,(j l) R e_l, a vector for every row and mode
-  const Rows AQl = A.transpose() * Ql;
+  const Rows AQl = times(A, Ql, 'T');
   for (int j = 0; j < m.n_modes; ++j) {
     const Eigen::Index at = 6 + j;
     for (int k = 0; k < 3; ++k) {
@@ -123,10 +133,10 @@ void LinearRegions::evaluate(Pass& p) const {
     if (!points_.counts(m.body)) continue;
     Rows a = rows_of(m, *s.a);
     a.row(0) -= (points_.gravity * s.load_factor).transpose();
-    Rows F = r.A * a;
+    Rows F = times(r.A, a);
     const Rows Ql = rows_of(m, *s.left);
     const bool brakes = r.A_damped.size() > 0 && s.v;
-    if (brakes) F += r.A_damped * rows_of(m, *s.v);
+    if (brakes) F += times(r.A_damped, rows_of(m, *s.v));
     const Mat3 left = left_turn(s, m.body);
     p.body[m.body].head<3>() += row(F, 0);
     for (Eigen::Index i = 1; i < F.rows(); ++i) p.body[m.body].tail<3>() += row(Ql, i).cross(row(F, i));
@@ -175,7 +185,7 @@ void LinearRegions::add_energy(const Config& q, const Config& v, Energy& sum) co
   for (const LinearRegion& r : regions) {
     const Modes& m = points_.modes[r.modes];
     if (!points_.counts(m.body)) continue;
-    const Rows Q = rows_of(m, q), V = rows_of(m, v), P = r.A * V;
+    const Rows Q = rows_of(m, q), V = rows_of(m, v), P = times(r.A, V);
     sum.kinetic += V.cwiseProduct(P).sum() / 2;
     sum.momentum += row(P, 0);
     for (Eigen::Index i = 0; i < P.rows(); ++i) sum.angular += row(Q, i).cross(row(P, i));
@@ -198,7 +208,7 @@ void LinearRegions::add_work(const Moment& moment, Work& sum) const {
     for (int j = 0; j < m.n_modes && s.h > 0; ++j)
       sum.dissipated += s.share() * viscous[j] * (amplitude(m, *s.w1, j) - amplitude(m, *s.w0, j)) / s.h;
     if (r.A_damped.size() > 0 && s.v)
-      sum.dissipated += (r.A_damped * rows_of(m, *s.v)).cwiseProduct(rows_of(m, *s.end) - rows_of(m, s.from())).sum();
+      sum.dissipated += times(r.A_damped, rows_of(m, *s.v)).cwiseProduct(rows_of(m, *s.end) - rows_of(m, s.from())).sum();
   }
 }
 
@@ -294,7 +304,7 @@ double LinearRegions::inertia(size_t k, const Moment& moment) const {
   Rows a = Rows::Zero(r.A.rows(), 3);
   if (moment.a) a = rows_of(points_.modes[r.modes], *moment.a);
   a.row(0) -= (points_.gravity * moment.s.load_factor).transpose();
-  return std::sqrt(a.cwiseProduct(r.A * a).sum() / r.A(0, 0));
+  return std::sqrt(a.cwiseProduct(times(r.A, a)).sum() / r.A(0, 0));
 }
 
 double LinearRegions::load_band(size_t k) const {

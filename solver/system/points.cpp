@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "base/wide.hpp"
 #include "system/linear_beams.hpp"
 #include "system/system.hpp"
 
@@ -74,9 +76,42 @@ Vec3 Points::followed(const Config& q, size_t node) const {
   return Vec3(sum);
 }
 
+/// x += Y u, Y by rows (3 x n).
+HILO_WIDE static void add_product(size_t n, const double* Y, const double* u, double* x) {
+  typedef double V __attribute__((vector_size(64)));
+  constexpr size_t width = sizeof(V) / sizeof(double);
+  V sum[3] = {};
+  size_t j = 0;
+  for (; j + width <= n; j += width) {
+    V by, row;
+    std::memcpy(&by, u + j, sizeof(V));
+    for (size_t i = 0; i < 3; ++i) std::memcpy(&row, Y + i * n + j, sizeof(V)), sum[i] += row * by;
+  }
+  for (size_t i = 0; i < 3; ++i) {
+    double rest = 0;
+    for (size_t k = j; k < n; ++k) rest += Y[i * n + k] * u[k];
+    for (size_t k = 0; k < width; ++k) rest += sum[i][k];
+    x[i] += rest;
+  }
+}
+
 void Points::follow(Config& q) const {
-  for (size_t i = 0; i < q.x.size(); ++i)
-    if (follower[i] >= 0) q.x[i] = followed(q, i);
+  std::vector<double> Y;  // of the modes of a body, by rows: nodes that follow one body come one after the other
+  int of = -1;
+  for (size_t i = 0; i < q.x.size(); ++i) {
+    const int b = follower[i];
+    if (b < 0) continue;
+    const auto shapes = shapes_at(static_cast<int>(i));
+    const size_t n = 3 * shapes.size();
+    if (n > 0 && b != of) {
+      of = b, Y.resize(3 * n);
+      const Mat3* products = q.Y.data() + 3 * modes[modes_of[b]].first;
+      for (size_t j = 0; j < shapes.size(); ++j)
+        for (size_t k = 0; k < 9; ++k) Y[k % 3 * n + 3 * j + k / 3] = products[j].data()[k];
+    }
+    q.x[i] = q.c[b] + q.R[b] * (X[i] - bodies[b].Xc);
+    if (n > 0) add_product(n, Y.data(), shapes[0].data(), q.x[i].data());
+  }
   if (!modes.empty()) static_cast<const System&>(*this).part<LinearBeams>().carry(q);  // points are those of a system
 }
 
@@ -171,26 +206,30 @@ void add_reduced(KktSolver& solver, int clique, int n, const double* K, const No
   thread_local std::vector<double> reduced;
   const int n3 = 3 * n, m3 = 3 * m;
   reduced.assign(static_cast<size_t>(m3) * m3, 0.0);
-  const auto add = [&](int row, int col, const Mat3& A) {
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) reduced[(3 * row + i) * m3 + 3 * col + j] += A(i, j);
+  const auto add = [&](int row, int col, const auto& A) {
+    double* to = reduced.data() + 3 * (row * m3 + col);
+    for (int i = 0; i < 3; ++i, to += m3)
+      for (int j = 0; j < 3; ++j) to[j] += A(i, j);
   };
+  const auto is_held = [&](int a) { return !maps[a].follower && (fixed[a][0] || fixed[a][1] || fixed[a][2]); };
   for (int a = 0; a < n; ++a) {
     if (maps[a].slot < 0) continue;
+    const bool held = is_held(a);
+    const Mat3 L = maps[a].follower ? skew(maps[a].left) : Mat3::Zero();
     for (int b = 0; b < n; ++b) {
       if (maps[b].slot < 0) continue;
-      Mat3 A;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          A(i, j) = !maps[a].follower && fixed[a][i] ? 0 : !maps[b].follower && fixed[b][j] ? 0 : K[(3 * a + i) * n3 + 3 * b + j];
+      using Entries = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+      Entries A = Eigen::Map<const Entries, 0, Eigen::OuterStride<>>(K + 3 * (a * n3 + b), Eigen::OuterStride<>(n3));
+      if (held || is_held(b))
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j)
+            if ((held && fixed[a][i]) || (!maps[b].follower && fixed[b][j])) A(i, j) = 0;
       add(maps[a].slot, maps[b].slot, A);
-      const Mat3 AR = maps[b].follower ? Mat3(-A * skew(maps[b].right)) : Mat3::Zero();
-      if (maps[b].follower) add(maps[a].slot, maps[b].slot + 1, AR);
-      if (maps[a].follower) {
-        const Mat3 L = skew(maps[a].left);
-        add(maps[a].slot + 1, maps[b].slot, L * A);
-        if (maps[b].follower) add(maps[a].slot + 1, maps[b].slot + 1, L * AR);
-      }
+      if (maps[a].follower) add(maps[a].slot + 1, maps[b].slot, L * A);
+      if (!maps[b].follower) continue;
+      const Entries AR = -A * skew(maps[b].right);
+      add(maps[a].slot, maps[b].slot + 1, AR);
+      if (maps[a].follower) add(maps[a].slot + 1, maps[b].slot + 1, L * AR);
     }
   }
   solver.add(clique, reduced.data());

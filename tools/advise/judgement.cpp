@@ -224,10 +224,16 @@ bool Judgement::is_off_at_twice(const Assignment& levels) {
   return all.knows(mine) && all.knows(its) && difference(all.of(its), all.of(mine)) > 1;
 }
 
+/// Of linear regions that share nodes a run tells what they do together, not what each of them does.
+bool Judgement::is_told_alone(size_t r) const {
+  return std::ranges::none_of(all.neighbours(r),
+                              [&](size_t other) { return other != r && fidelity(a.base->levels[other]) == Fidelity::linear; });
+}
+
 /// Is a region of `cells` not yet one of `levels` that is too far off to be linear?
 bool Judgement::needs_cells_beside(const Assignment& levels, const Assignment& cells) const {
   for (size_t r = 0; r < n; ++r)
-    if (levels[r] != cells[r] && doubt(r) > never_linear) return true;
+    if (levels[r] != cells[r] && is_never_linear(r)) return true;
   return false;
 }
 

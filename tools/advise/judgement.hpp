@@ -46,9 +46,10 @@ class Judgement {
   Candidates::Beyond beyond() const;
   bool is_off_at_twice(const Assignment& levels);
   double doubt(size_t r) const { return doubt_.contains(r) ? doubt_.at(r) : 0; }
+  bool is_told_alone(size_t r) const;
+  /// Regions that could be linear had doubts of up to 12 tolerances.
+  bool is_never_linear(size_t r) const { return doubt(r) > 15 && is_told_alone(r); }
   bool is_touched(size_t r) const { return touched_.contains(r); }
-
-  static constexpr double never_linear = 15;  // tolerances: regions that could be linear had doubts of up to 12
 
   Candidates& all;
   const SearchOptions& o;

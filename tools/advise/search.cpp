@@ -50,7 +50,7 @@ class Search : Judgement {
     return !o.each_region && price > 2. / 3 * all.price(than) && all.spent() + planned + price > (deform > 3 ? 1 : 0.5) * a.all_cells;
   }
   /// Is it vain to try it linear?
-  bool needs_cells(size_t r) const { return !serves(*a.base) && doubt(r) > never_linear; }
+  bool needs_cells(size_t r) const { return !serves(*a.base) && is_never_linear(r); }
 
   /// Linear regions of the chosen model that the reference has as cells lack nothing that the difference from it does not hold.
   bool has_modes_left_out(size_t r) const { return is_linear(a.chosen->levels[r]) && is_linear(a.reference->levels[r]); }
@@ -58,7 +58,7 @@ class Search : Judgement {
   /// tolerances or more; of two with less than a hundredth of it one served.
   bool bears_load(size_t r) const {
     constexpr double little = 0.05;
-    if (serves(*a.base) || o.each_region) return false;
+    if (serves(*a.base) || o.each_region || !is_told_alone(r)) return false;
     double largest = 0;
     for (const auto& [region, energy] : a.base->energy) largest = std::max(largest, energy);
     const auto mine = a.base->energy.find(r);

@@ -230,7 +230,8 @@ TEST_F(LinearBeams, AreTheSameOnRanksAndAfterARestart) {
   succeeded(work.run("hilo-solve --restart cut.h5 --set time.end=0.02 --accept"));
   const Eigen::MatrixXd a = one.history("probe/p"), b = Results(work / "cut.h5").history("probe/p");
   ASSERT_EQ(a.rows(), b.rows());
-  EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-9);
+  // the step to the earlier end is shorter by round-off, and the tolerance is 1e-10
+  EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-9 * a.cwiseAbs().maxCoeff());
 }
 
 // A rigid beam is the body that its sections make.  Welds of its sections and joints of a body take the same swing by steps of second
