@@ -138,9 +138,10 @@ Candidates::Job Candidates::job(const Request& request) const {
       more.push_back(table(r) + ".stiffening=true");
   for (size_t r = 0; r < request.levels.size() && (request.modes != 1 || request.step != 1); ++r) {
     if (fidelity(request.levels[r]) != Fidelity::linear) continue;
-    const Modes m = modes_of(r, request.modes);  // with half the step the same modes
+    if (request.step == 1 && request.modes_in(r) == 1) continue;
+    const Modes m = modes_of(r, request.modes_in(r));  // with half the step the same modes
     more.push_back(fmt::format("{}.up_to={:.17g}", table(r), m.up_to));
-    if (request.modes != 1) more.push_back(fmt::format("{}.modes={}", table(r), m.most));
+    if (request.modes_in(r) != 1) more.push_back(fmt::format("{}.modes={}", table(r), m.most));
   }
   Digest key;
   key.add(about()).add(request.finer ? finer_digest_ : mesh_digest_);  // another hilo may compute otherwise
@@ -319,7 +320,7 @@ double Candidates::unknowns(const Request& request) const {
   for (size_t r = 0; r < request.levels.size(); ++r) {
     const Level level = request.levels[r];
     n += level == Level::rigid        ? 6
-         : level == Level::linear     ? 50 * request.modes
+         : level == Level::linear     ? 50 * request.modes_in(r)
          : level == Level::stiffening ? 1000
                                       : 3 * nodes_[r] * (request.finer ? std::pow(refinement_, 3) : 1);
   }

@@ -14,12 +14,14 @@
 namespace hilo {
 
 /// What is to be run: `step` scales the time step, `end` is where the run ends, 0: where the scene says  [s]; `modes` scales how many modes
-/// linear regions may have; `finer`: on the finer mesh.
+/// the linear regions in `richer` may have; `finer`: on the finer mesh.
 struct Request {
   Assignment levels;
   double step = 1, end = 0;
   int modes = 1;
   bool finer = false;
+  std::set<size_t> richer{};
+  int modes_in(size_t region) const { return richer.contains(region) ? modes : 1; }
 };
 
 struct Candidate : Request {

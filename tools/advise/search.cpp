@@ -87,7 +87,10 @@ class Search : Judgement {
       a.modes_at_most = modes_at_most();
       if (a.modes_at_most < 0.1 && error(*a.chosen) + a.modes_at_most <= 1) return;
       const Candidate& c = *a.chosen;
-      const Candidate& more = of({c.levels, 1, end_beside(c), 2 * c.modes});  // which may be chosen
+      Request richer{c.levels, 1, end_beside(c), 2 * c.modes};
+      for (size_t r = 0; r < n; ++r)
+        if (has_modes_left_out(r)) richer.richer.insert(r);
+      const Candidate& more = of(richer);  // which may be chosen
       if (!more.failure.empty())
         return a.modes.clear(), warn("", "more modes do not run, so the error of those left out is unknown: " + more.failure);
       a.modes = part(c, more, 1);
@@ -132,7 +135,7 @@ class Search : Judgement {
   /// Error of the mesh by the chosen model on a finer one; it falls with the square of the size of cells.
   void find_mesh() {
     if (all.refinement() == 0) return;
-    const Candidate& fine = all.of({a.chosen->levels, 1, end_beside(*a.chosen), a.chosen->modes, true});
+    const Candidate& fine = all.of({a.chosen->levels, 1, end_beside(*a.chosen), a.chosen->modes, true, a.chosen->richer});
     if (!fine.failure.empty()) return warn("", "the finer mesh does not run, so the error of the mesh is unknown: " + fine.failure);
     const double square = all.refinement() * all.refinement();
     a.mesh = part(*a.chosen, fine, square / (square - 1));
