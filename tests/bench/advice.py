@@ -309,8 +309,8 @@ class Judge:
         for q in advice["quantities"]:
             told = sum(q[k] or 0 for k in ("levels", "linear strains", "modes")) + 0.75 * q["step"]
             true = q["value"] - want[q["quantity"]]
-            out["total"].append((true / want[q["quantity"]] / self.part(), told / want[q["quantity"]] / self.part()))
-        true, told = max(out["total"], key=lambda pair: abs(pair[0]))
+            out["total"].append([x / want[q["quantity"]] / self.part() for x in (true, told, q["in doubt"])])
+        true, told, _ = max(out["total"], key=lambda parts: abs(parts[0]))
         out["row"] = (f"{out['error']:7.2f} {rigid:8.2f} {linear:7.2f}   {out['over_best']:5.2f} {out['share']:6.3f} {out['advice']:6.2f}"
                       f" {true:6.2f} {told:6.2f} {'checked' if advice['checked'] else '       '}  {chosen[2]['model']}")
         return out
@@ -330,13 +330,19 @@ def sums(rows):
     print(share("at most 1.5 times the cheapest true one", lambda r: r["over_best"] <= 1.5, answered),
           share("; other than all cells", lambda r: r["share"] < 0.7, answered))
     print(f"advice in runs of all cells: median {statistics.median(costs):.2f}, mean {statistics.mean(costs):.2f}, most {max(costs):.2f}")
-    worst = [max(r["total"], key=lambda pair: abs(pair[0])) for r in answered]
-    every = [pair for r in answered for pair in r["total"]]
-    for what, pairs in (("the worst quantity of a scene", worst), ("all", every)):
+    worst = [max(r["total"], key=lambda parts: abs(parts[0])) for r in answered]
+    every = [parts for r in answered for parts in r["total"]]
+
+    def meets(true, told, doubt):  # what is in doubt has no sign: it may be the rest
+        low, high = sorted((0.8 * true, 1.25 * true))
+        return told + abs(doubt) >= low and told - abs(doubt) <= high
+
+    for what, of in (("the worst quantity of a scene", worst), ("all", every)):
         for least in (0, 0.1):
-            print(share(f"budget over true total within .8 to 1.25, {what}, true total at least {least} of the tolerance",
-                        lambda pair: 0.8 <= pair[1] / pair[0] <= 1.25, [pair for pair in pairs if abs(pair[0]) > least]))
-    print(share("budget off by at most a tenth of the tolerance, all", lambda pair: abs(pair[1] - pair[0]) <= 0.1, every))
+            of = [parts for parts in of if abs(parts[0]) > least]
+            words = f"budget over true total within .8 to 1.25, {what}, true total at least {least} of the tolerance"
+            print(share(words, lambda parts: meets(*parts), of), share("; by its signed parts alone", lambda parts: meets(*parts[:2], 0), of))
+    print(share("budget off by at most a tenth of the tolerance, all", lambda parts: abs(parts[1] - parts[0]) <= 0.1, every))
 
 
 def names(words):

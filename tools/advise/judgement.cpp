@@ -28,6 +28,7 @@ double Advice::with_step(double off, size_t k) const {
 }
 
 Judgement::Judgement(Candidates& all_models, const SearchOptions& options) : all(all_models), o(options), n(all_models.names().size()) {
+  a.tightest = o.tightest;
   find_contacts();
   find_base();
   find_reference();

@@ -23,9 +23,10 @@ const Candidate* all_rigid(const Advice& a) {
 }
 
 /// Of each quantity: its value by the chosen model, what is allowed, and the parts of the error: what the levels change (to the base,
-/// and from there to the reference), the time step, modes left out and the mesh.
+/// and from there to the reference), what is in doubt of the reference (its sign is not known), the time step, modes left out and the mesh.
 Table budget(const Advice& a) {
-  Table t{{"quantity", "unit", "value", "allowed", "levels", "linear strains", "step", "modes", "mesh", "sum over allowed", "all rigid"},
+  Table t{{"quantity", "unit", "value", "allowed", "levels", "linear strains", "in doubt", "step", "modes", "mesh", "sum over allowed",
+           "all rigid"},
           {},
           2,
           4};
@@ -34,9 +35,10 @@ Table budget(const Advice& a) {
     const QuantityValue &mine = a.chosen->values[k], &base = a.base->values[k], &its = a.reference->values[k];
     const double levels = mine.value - base.value, strains = base.value - its.value, step = -a.step[k];
     const double modes = a.modes.empty() ? 0 : -a.modes[k], mesh = a.mesh.empty() ? 0 : -a.mesh[k];
-    const double sum = a.with_step(mine.value - its.value, k) + std::abs(modes) + std::abs(mesh);
+    const double doubt = a.doubt * a.tightest * std::abs(its.value);
+    const double sum = a.with_step(mine.value - its.value, k) + doubt + std::abs(modes) + std::abs(mesh);
     t.rows.push_back({mine.name, mine.unit, number(mine.value), number(its.allowed), number(levels),
-                      a.reference == a.base ? "-" : number(strains), number(step), a.modes.empty() ? "-" : number(modes),
+                      a.reference == a.base ? "-" : number(strains), number(doubt), number(step), a.modes.empty() ? "-" : number(modes),
                       a.mesh.empty() ? "-" : number(mesh), number(sum / its.allowed),
                       rigid ? number(rigid->values[k].value - its.value) : "-"});
   }

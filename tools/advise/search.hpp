@@ -28,6 +28,7 @@ struct Advice {
   double modes_at_most = 0;                    // what they may change, over the tightest tolerance, by the strain they lack
   std::vector<double> mesh;                    // what cells of no size would
   double doubt = 0;                            // what strains of the second degree may change of the reference, over the tightest tolerance
+  double tightest = 0;                         // that tolerance, relative
   std::map<size_t, const Candidate*> without;  // the chosen model with this region rigid
   std::vector<const Candidate*> tried;
   std::deque<Candidate> made;                // references that are no runs
