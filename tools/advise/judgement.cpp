@@ -186,8 +186,8 @@ bool Judgement::doubts(const Candidate& c, Assignment& levels) {
 }
 
 /// A model and what cells change of it, by a run of each at twice the step, at half the price of cells.  The model is the base, or where a
-/// whole run says that cells change too much of it, the base with the first few regions nonlinear, those in most doubt first.  None where
-/// that would not do: the model's own step is to be known as small, and what cells change too.
+/// whole run says that cells change too much of it, the base with the first one, two, four, ... regions nonlinear, those in most doubt
+/// first.  None where that would not do: the model's own step is to be known as small, and what cells change too.
 const Candidate* Judgement::by_twice(const Request& cells) {
   constexpr double most_step = 0.3, most_change = 0.9;  // of a tolerance
   if (!is_measured_method() || !may_be_twice() || o.check == Check::always) return nullptr;
@@ -206,10 +206,13 @@ const Candidate* Judgement::by_twice(const Request& cells) {
   if (difference(after, before) <= most_change) return made(*a.base, before);
   if (cells.end != 0 || !after.failure.empty()) return nullptr;
   Assignment levels = a.base->levels;
+  size_t changed = 0, next = 1;
   for (const size_t r : sorted([&](size_t region) { return doubt(region); })) {
-    levels[r] = cells.levels[r];
+    if (levels[r] == cells.levels[r]) continue;
+    levels[r] = cells.levels[r], ++changed;
     const Request model{all.consistent(levels)}, at_twice{model.levels, 2};
-    if (model.levels == a.base->levels || needs_cells_beside(model.levels, cells.levels)) continue;
+    if (changed < next || needs_cells_beside(model.levels, cells.levels)) continue;
+    next = 2 * changed;
     if (model.levels == cells.levels || all.price(model) > 0.7 * all.price(cells)) break;
     const Candidate& twice = all.of(at_twice);
     if (!twice.failure.empty() || difference(after, twice) > most_change) continue;
