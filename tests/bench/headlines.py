@@ -12,7 +12,8 @@ as are several targets of a Makefile where each of them went through alone.
   headlines.py REPO BUILD --only "L soft"     those whose line has one of these words (ONLY="L soft"), also if they went through before
   headlines.py REPO BUILD --list              what would be run, and what is left out and why
   headlines.py REPO BUILD --check             nothing is run, but what is named exists: targets of make, tests, scripts (in the suite)
-  --limit SECONDS                             of each (LIMIT=...; else an hour, or what LIMITS says)"""
+  --limit SECONDS                             of each (LIMIT=...; else an hour, or what LIMITS says)
+  --jobs N                                    so many at once, each in a copy of its own (JOBS=N); their seconds mean less then"""
 import argparse
 import csv
 import datetime
@@ -25,6 +26,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 LIMITS = {"make -C tests": 3 * 3600, "make -C data/firing L": 2 * 3600, "make -C data/stability": 3 * 3600, "make -C data/charts": 3 * 3600,
@@ -86,9 +88,9 @@ def digest(repo, *below):
     return hashlib.sha256(b"".join(n.encode() + open(os.path.join(repo, n), "rb").read() for n in tracked(repo, *below))).hexdigest()[:12]
 
 
-def copy_of(repo, folder):
+def copy_of(repo, folder, name):
     """The tracked files as they are, and build/ as a link."""
-    tree = os.path.join(folder, "tree")
+    tree = os.path.join(folder, name)
     shutil.rmtree(tree, ignore_errors=True)
     for name in tracked(repo):
         os.makedirs(os.path.dirname(os.path.join(tree, name)), exist_ok=True)
@@ -150,6 +152,7 @@ def main():
     options.add_argument("repo"), options.add_argument("build")
     options.add_argument("--only", default=""), options.add_argument("--limit", type=float)
     options.add_argument("--list", action="store_true"), options.add_argument("--check", action="store_true")
+    options.add_argument("--jobs", type=int, default=1)
     o = options.parse_args()
     repo, build = os.path.abspath(o.repo), os.path.abspath(o.build)
     named = commands(repo)
@@ -171,27 +174,41 @@ def main():
     table, done = os.path.join(folder, "table.tsv"), {}
     if os.path.exists(table):
         done = {row["command"]: row for row in csv.DictReader(open(table), delimiter="\t")}
-    tree = copy_of(repo, folder)
     went_through = {c for c, row in done.items() if row["exit"] == "0" and row["tools"] == tools}
-    for command in sorted(chosen, key=lambda c: (c != SUITE, len(shlex.split(c)) > 4)):
-        if command in went_through and not only:
-            continue
-        by = "" if only else seen_by(command, folder, build, went_through)
+    waiting = [c for c in sorted(chosen, key=lambda c: (c != SUITE, len(shlex.split(c)) > 4)) if only or c not in went_through]
+    one = threading.Lock()
+
+    def take(command, tree):
+        with one:
+            by = "" if only else seen_by(command, folder, build, went_through)
         log, code, seconds = log_of(command, folder), 0, 0.0
         if not by:
             limit = o.limit or LIMITS.get(command, 3600)
             print(f"{command} (at most {limit:g} s) ...", flush=True)
             code, seconds = run(command, tree, build, limit, log)
-        done[command] = {"command": command, "page": named[command], "exit": str(code), "seconds": f"{seconds:.1f}", "tools": tools,
-                         "when": datetime.datetime.now().isoformat(timespec="minutes"), "last": "seen by " + by if by else last_line(log)}
-        if code == 0:
-            went_through.add(command)
-        with open(table + ".new", "w", newline="") as f:
-            rows = csv.DictWriter(f, list(done[command]), delimiter="\t")
-            rows.writeheader(), rows.writerows(done.values())
-        os.replace(table + ".new", table)
-        if not by:
-            print(f"  exit {code} after {seconds:.1f} s", flush=True)
+            print(f"  exit {code} after {seconds:.1f} s: {command}", flush=True)
+        with one:
+            done[command] = {"command": command, "page": named[command], "exit": str(code), "seconds": f"{seconds:.1f}", "tools": tools,
+                             "when": datetime.datetime.now().isoformat(timespec="minutes"), "last": "seen by " + by if by else last_line(log)}
+            if code == 0:
+                went_through.add(command)
+            with open(table + ".new", "w", newline="") as f:
+                rows = csv.DictWriter(f, list(done[command]), delimiter="\t")
+                rows.writeheader(), rows.writerows(done.values())
+            os.replace(table + ".new", table)
+
+    def work(tree):
+        while waiting:
+            take(waiting.pop(0), tree)
+
+    trees = [copy_of(repo, folder, f"tree-{k}") for k in range(o.jobs)]
+    if waiting and waiting[0] == SUITE:  # what it passes is known to all
+        take(waiting.pop(0), trees[0])
+    workers = [threading.Thread(target=work, args=(tree,)) for tree in trees]
+    for w in workers:
+        w.start()
+    for w in workers:
+        w.join()
     print(f"\n{'exit':>4} {'seconds':>8}  command")
     for command in chosen:
         row = done[command]
