@@ -13,7 +13,7 @@ import advised
 from advised import BIN, hinge, imported, levels, peak, told, values, write
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "bench"))
-from advice import Deck  # noqa: E402
+from advice import PUBLISHED, Deck  # noqa: E402
 
 
 def deck(n=4):
@@ -154,6 +154,20 @@ with tempfile.TemporaryDirectory() as folder:
     assert levels(advice) == {"a": "linear", "b": "rigid", "c": "rigid"}, advice["regions"]
     assert {r["region"]: r["why"] for r in advice["regions"]}["b"] == "a joint or spring names it as a whole", advice["regions"]
     write(scene())
+
+    # where cells are needed and one bar of them is enough, all cells run at twice the step alone; what is chosen serves
+    os.mkdir("struck")
+    os.chdir("struck")
+    PUBLISHED["c7"]("c7").write()
+    advised.done("hilo-import", "deck.inp", "-o", "mesh.h5")
+    advice = told("mesh.h5", "--tol", "2%")
+    assert levels(advice) == {"a": "linear", "b": "linear", "c": "nonlinear"}, levels(advice)
+    models = [m["model"] for m in advice["models"]]
+    assert "nonlinear a, b, c, by twice the step" in models and "nonlinear a, b, c" not in models, models
+    chosen = {q["quantity"]: q["value"] for q in advice["quantities"]}
+    for name, v in values(tagged("--rest", "nonlinear"), "--set", "time.step=1.25e-4", "--set", 'time.error_estimate="never"').items():
+        assert abs(chosen[name] / v - 1) < 0.02, (name, chosen[name], v)
+    os.chdir("..")
 
     # a signal ends its solvers too
     advise = subprocess.Popen([os.path.join(BIN, "hilo-advise"), "--quiet", "scene.toml", "mesh.h5", "--set", "time.step=1e-6", "--work", "ended.work"],
