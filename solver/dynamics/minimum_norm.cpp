@@ -44,17 +44,13 @@ void MinimumNorm::take_rows(const Stage& stage) {
       for (Eigen::Index r = 0; r < G[j].rows(); ++r)
         for (size_t k = 0; k < cliques_[j].size(); ++k) visit(cliques_[j][k], Eigen::Map<Vec3>(&G[j](r, 3 * static_cast<Eigen::Index>(k))));
   };
-  std::vector<Mat3> scale(A_.n_blocks(), Mat3::Zero());  // of unknowns: their rows next to each other are near unit ones
-  each_part([&](int block, const Vec3& g) { scale[block] += g * g.transpose(); });
-  std::vector<Vec3> squares(scale.size(), Vec3::Zero());  // along the axes of each block, by rows: those of the sum end in round-off
-  for (Mat3& S : scale) S = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvectors().eval();
-  each_part([&](int block, const Vec3& g) { squares[block] += (scale[block].transpose() * g).cwiseAbs2(); });
-  for (size_t block = 0; block < scale.size(); ++block) {
-    const Vec3& of = squares[block];
-    const Vec3 factor = (of.array() > least * of.maxCoeff()).select(of.cwiseSqrt().cwiseInverse(), 0);
-    scale[block] = (scale[block] * factor.asDiagonal() * scale[block].transpose()).eval();
-  }
-  each_part([&](int block, Eigen::Map<Vec3> g) { g = (scale[block] * g).eval(); });
+  std::vector<Mat3> axes(A_.n_blocks(), Mat3::Zero());  // of unknowns, whose rows next to each other are then near unit ones
+  each_part([&](int block, const Vec3& g) { axes[block] += g * g.transpose(); });
+  for (Mat3& S : axes) S = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvectors().eval();
+  std::vector<Vec3> scale(axes.size(), Vec3::Zero());  // along the axes of each block, by rows: those of the sum end in round-off
+  each_part([&](int block, Eigen::Map<Vec3> g) { g = (axes[block].transpose() * g).eval(), scale[block] += g.cwiseAbs2(); });
+  for (Vec3& s : scale) s = (s.array() > least * s.maxCoeff()).select(s.cwiseSqrt().cwiseInverse(), 0).eval();
+  each_part([&](int block, Eigen::Map<Vec3> g) { g.array() *= scale[block].array(); });
   A_.zero();
   rows_.clear(), column_.clear(), value_.clear();
   for (int j = 0; j < cliques_.size(); ++j) {
@@ -101,8 +97,9 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   for (const Row& row : rows_) {
     double square = 0;
     for (; at < row.end; ++at) square += value_[at] * value_[at];
-    if (row.active) size = std::hypot(size, lambda[row.place] * std::sqrt(square));
+    if (row.active) size += lambda[row.place] * lambda[row.place] * square;
   }
+  size = std::sqrt(size);
   std::vector<double> best;
   Eigen::VectorXd left;  // of f by the best
   // conjugate gradients on G^T G y = f, from nothing: what an instant before left where rows hardly act would be shares that mean nothing.

@@ -107,34 +107,44 @@ template <bool with_sums>
   typedef long Bits __attribute__((vector_size(64)));
   constexpr int width = sizeof(V) / sizeof(double);
   const Bits no_sign = Bits{} + 0x7fffffffffffffff;
+  const auto add = [](double value, double by, double& total, double& size) {
+    const double term = value * by;
+    total += term;
+    if constexpr (with_sums) size += std::abs(term);
+  };
   for (int i = 0; i < n_blocks; ++i) {
-    const int length = 3 * (start[i + 1] - start[i]);
-    for (int k = 0; k < length; k += 3)
-      for (int c = 0; c < 3; ++c) of_x[k + c] = x[3 * columns[start[i] + k / 3] + c];
-    const int wide = length < 4 * width ? 0 : length - length % width;  // short rows cost more by lanes
+    const int first = start[i], last = start[i + 1], length = 3 * (last - first);
+    if (length < 4 * width) {  // short rows cost more by lanes
+      for (int row = 3 * i; row < 3 * i + 3; ++row) {
+        double total = 0, size = 0;
+        for (int k = first; k < last; ++k, a += 3)
+          for (int c = 0; c < 3; ++c) add(a[c], x[3 * columns[k] + c], total, size);
+        y[row] = total;
+        if constexpr (with_sums) sums[row] = size;
+      }
+      continue;
+    }
+    for (int k = first; k < last; ++k)
+      for (int c = 0; c < 3; ++c) of_x[3 * (k - first) + c] = x[3 * columns[k] + c];
     for (int row = 3 * i; row < 3 * i + 3; ++row, a += length) {
-      V sum = {}, size = {}, values, by;
-      for (int k = 0; k < wide; k += width) {
+      V totals = {}, sizes = {}, values, by;
+      int k = 0;
+      for (; k + width <= length; k += width) {
         std::memcpy(&values, a + k, sizeof(V)), std::memcpy(&by, of_x + k, sizeof(V));
         const V terms = values * by;
-        sum += terms;
-        if constexpr (with_sums) size += (V)((Bits)terms & no_sign);
+        totals += terms;
+        if constexpr (with_sums) sizes += (V)((Bits)terms & no_sign);
       }
-      double total = 0, of_sizes = 0;
-      for (int j = 0; wide > 0 && j < width; ++j) {
-        total += sum[j];
-        if constexpr (with_sums) of_sizes += size[j];
-      }
-      for (int k = wide; k < length; ++k) {
-        const double term = a[k] * of_x[k];
-        total += term;
-        if constexpr (with_sums) of_sizes += std::abs(term);
-      }
+      double total = 0, size = 0;
+      for (; k < length; ++k) add(a[k], of_x[k], total, size);
+      for (int l = 0; l < width; ++l) total += totals[l];
+      for (int l = 0; with_sums && l < width; ++l) size += sizes[l];
       y[row] = total;
-      if constexpr (with_sums) sums[row] = of_sizes;
+      if constexpr (with_sums) sums[row] = size;
     }
   }
 }
+
 HILO_WIDE static void multiply_wide(int n_blocks, const int* start, const int* columns, const double* a, const double* x, double* of_x,
                                     double* y) {
   multiply_rows<false>(n_blocks, start, columns, a, x, of_x, y, nullptr);
