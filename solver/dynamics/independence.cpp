@@ -26,8 +26,8 @@ Independence by_dense_qr(const Eigen::MatrixXd& A, double dependent) {
   qr.compute(A);
   const Eigen::Index rank = qr.rank();
   Independence out{qr.colsPermutation().indices(), rank, {}};
-  const Eigen::MatrixXd factors =
-      qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solve(qr.matrixQR().topRightCorner(rank, A.cols() - rank));
+  Eigen::MatrixXd factors = qr.matrixQR().topRightCorner(rank, A.cols() - rank);
+  if (factors.size() > 0) qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solveInPlace(factors);
   for (Eigen::Index k = 0; k < factors.cols(); ++k) {
     out.depends.emplace_back();
     for (Eigen::Index i = 0; i < rank; ++i)
