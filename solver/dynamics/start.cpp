@@ -144,6 +144,34 @@ void nearest_velocities(const System& system, KktSolver& solver, const Config& q
   system.add_rates(v, q, z);
 }
 
+namespace {
+
+/// Where something has no inertia and nothing presses it, as a body without mass that spins about its hinge, the matrix is singular and
+/// what else moves is determined: by a little more inertia everywhere, which then takes no part of the forces.  False where it does.
+bool solve_beside_massless(const System& system, KktSolver& solver, const Stage& stage, std::span<const double> lambda, const Residual& r,
+                           std::vector<double>& z) {
+  constexpr double little = 1e-13, no_part = 1e-6;
+  Residual same;
+  assemble(system, solver, stage, lambda, same, true);
+  const auto each = [&](const auto& visit) {
+    for (const UnknownField& f : system.unknowns)
+      for (size_t k = 0; k < f.size(); ++k)
+        if (system.owns(f.block(k))) visit(f.block(k), little * r.sigma * f.scale(k) * f.scale(k));
+  };
+  each([&](int block, double more) {
+    const double d[3] = {more, more, more};
+    solver.add_diagonal(block, d);
+  });
+  if (!correct(solver, r.r, z).ok) return false;
+  double part = 0, whole = 0;
+  each([&](int block, double more) {
+    for (int i = 3 * block; i < 3 * block + 3; ++i) part = std::max(part, std::abs(more * z[i])), whole = std::max(whole, std::abs(r.r[i]));
+  });
+  return system.comm->max(part) <= no_part * system.comm->max(whole);
+}
+
+}  // namespace
+
 void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda, bool has_mass) {
   // guess: bodies that keep their spin, everything else unaccelerated; the solve adds the rest
   combine(a, {{0, &s.v}});
@@ -182,7 +210,7 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
     const std::vector<char> on = system.rows_on();
     for (size_t i = 0; i < on.size(); ++i) r.r[first + i] = on[i] ? r.sigma * acceleration[i] : 0;
     const SolveReport solved = correct(solver, r.r, z);
-    if (!solved.ok)
+    if (!solved.ok && !solve_beside_massless(system, solver, stage, lambda, r, z))
       throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}{}", solved.message,
                                   free_part(system, solver, r.sigma)));
     system.add_rates(a, s.q, z);
