@@ -9,10 +9,18 @@
 
 namespace hilo {
 
-/// From the state of a run under the loads at the start.  Where that fails, the state is where the last step ended.  Collective.
-NewtonReport come_to_rest(RunParts& run);
+/// Loads at time t [s] times `ramp`.
+struct LoadLevel {
+  double t = 0, ramp = 1;
+};
+struct RestReport : NewtonReport {
+  bool ends = false;  // it failed, and would for less of the loads: what nothing holds leaves the scene, or a signal came
+};
+/// Takes `state` to rest under these loads.  What moves by a law is in its new place from the first step on.  Where that fails, the state
+/// is where the last step ended.  Collective.
+RestReport come_to_rest(RunParts& run, State& state, const LoadLevel& under);
 
 /// What memory makes of positions at rest: why they cannot be, or "".  Collective.
-std::string keep_at_rest(System& system, const Config& q);
+std::string keep_at_rest(System& system, const Config& q, const LoadLevel& under);
 
 }  // namespace hilo

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The start from equilibrium.  Where parts can touch, steps from rest lead there (from_rest), so that nothing passes through anything.
+// The start from equilibrium.  Where parts can touch, or Newton's method alone does not, steps from rest lead there (from_rest): nothing
+// passes through anything.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -23,7 +24,7 @@ bool leave(RunParts& run, Stability& stability, const Unstable& unstable) {
   State& state = run.state;
   const State before = state;
   constexpr int most = 5;  // states on the way that are not stable either
-  if (stability.leave(unstable, state.q, state.lambda, true, run.newton) && keep_at_rest(system, state.q).empty()) return true;
+  if (stability.leave(unstable, state.q, state.lambda, true, run.newton) && keep_at_rest(system, state.q, {}).empty()) return true;
   if (touching(system))
     for (const double nudge : {1e-3, -1e-3}) {
       state = before;
@@ -32,7 +33,7 @@ bool leave(RunParts& run, Stability& stability, const Unstable& unstable) {
         std::vector<double> z = from->z;
         for (double& x : z) x *= nudge * system.length;
         system.move(state.q, z);
-        if (!come_to_rest(run).converged) break;
+        if (!come_to_rest(run, state, {}).converged) break;
         from = stability.look(state.q, state.lambda);
       }
       if (!from) return true;
@@ -85,8 +86,13 @@ bool settle_down(RunParts& run) {
   State& state = run.state;
   require_rest(system, state.q, run.scene.table("time").where("start"));
   const Config drawn = state.q;
-  const NewtonReport r =
-      touching(system) ? come_to_rest(run) : equilibrium(system, *run.solver, state.q, state.lambda, 0, 1, true, run.newton);
+  const std::vector<double> none = state.lambda;
+  NewtonReport r;
+  if (!touching(system)) r = equilibrium(system, *run.solver, state.q, state.lambda, 0, 1, true, run.newton);
+  if (!r.converged) {
+    state.q = drawn, state.lambda = none;
+    r = come_to_rest(run, state, {});
+  }
   if (!r.converged) {
     run.audit->start(state);
     run.recorder->first(state, run.audit->ledger());
@@ -104,7 +110,7 @@ bool settle_down(RunParts& run) {
       warn(where, found + ". No stable one was found: the run starts there");
   }
   if (run.talk && !stability.known()) Stability::tell_unknown(run.solver->name());
-  keep_at_rest(system, state.q), system.settle(true);
+  keep_at_rest(system, state.q, {}), system.settle(true);
   const std::string moved = told_moves(system, drawn, state.q);
   if (run.talk) fmt::print(stderr, "equilibrium after {} iterations{}\n", r.iterations, moved);
   return true;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/from_rest.hpp"
 #include "dynamics/held.hpp"
 #include "dynamics/jump.hpp"
 #include "dynamics/run_parts.hpp"
@@ -36,7 +37,7 @@ class StaticSteps final : public Steps {
     System& system = run_.system;
     State& state = run_.state;
     if (at_.done == 0) {
-      require_held(system, state.q, end_ / n_, 1.0 / n_, run_.scene.table("time").where("analysis"));
+      if (!touching(system)) require_held(system, state.q, end_ / n_, 1.0 / n_, run_.scene.table("time").where("analysis"));
       run_.audit->start(state);
       run_.recorder->first(state, run_.audit->ledger());
     }
@@ -65,7 +66,8 @@ class StaticSteps final : public Steps {
       if (!failure.empty()) {
         system.commit(state.q), system.settle(false);
         if (why.empty() || r.least_det.det <= 0) why = failure;
-        if (at_.step <= std::ldexp(1.0 / n_, -run_.max_cuts)) {
+        const bool free = at_.done == 0 && touching(system) && !unheld(system, system.start).empty();  // it comes to rest soon, or hardly
+        if (ends_ || at_.step <= std::ldexp(1.0 / n_, -(free ? 2 : run_.max_cuts))) {
           if (at_.least.det < 0.01 && r.least_det.det > 0) why += "; " + system.inside_out(at_.least);
           if (r.least_det.det > 0)
             why += touching(system)
@@ -85,6 +87,7 @@ class StaticSteps final : public Steps {
       std::swap(state, reached);
       if (at_.ahead && (next >= at_.ahead->next || system.traits().remembers)) at_.ahead.reset();
       at_.unstable_states += at_.unstable;
+      if (!unforeseen_) at_.unforeseen = 0;
       if (jump_ > 0) tell_jump(next);
       ++run_.report.steps;
       at_.done = next, at_.step = std::min(1.0 / n_, 2 * at_.step);
@@ -123,6 +126,7 @@ class StaticSteps final : public Steps {
   /// A step to the share `next` of the loads: why it cannot be accepted, or "".
   std::string try_step(double next, State& reached, NewtonReport& r) {
     search(0);
+    ends_ = false;
     System& system = run_.system;
     const State& state = run_.state;
     reached.q = state.q, reached.lambda = state.lambda, reached.t = next * end_;
@@ -158,6 +162,15 @@ class StaticSteps final : public Steps {
       r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, true, options);
       run_.report.iterations += r.iterations;
     }
+    const bool from_rest = !r.converged && touching(system);
+    if (from_rest) {
+      begin_again();
+      State at = state;
+      const RestReport rest = come_to_rest(run_, at, {reached.t, next});
+      r = rest, ends_ = rest.ends;
+      run_.report.iterations += r.iterations;
+      reached.q = at.q, reached.lambda = at.lambda;
+    }
     unstable_.reset(), jump_ = 0;
     bool factored = false;
     if (r.converged && !is_large()) {
@@ -166,15 +179,28 @@ class StaticSteps final : public Steps {
       examined_ = stability.known(), factored = stability.factored();
     }
     if (!r.converged) return r.reason;
-    if (!unstable_ && ((examined_ && !is_large()) || r.iterations > few_iterations))
+    if (!unstable_ && !(from_rest && at_.done == 0) && ((examined_ && !is_large()) || r.iterations > few_iterations))
       jump_ =
           BranchJump(system, *run_.solver, options)
               .between({state.q, state.lambda, state.t, at_.done}, {reached.q, reached.lambda, reached.t, next}, step.foreseen, factored);
+    unforeseen_ = jump_ > 0 && is_no_jump(next);
+    if (unforeseen_) jump_ = 0;
     take(reached, next);
     const std::string fault = system.fault(reached.q);
     return fault.empty() ? run_.audit->look(state.q, reached, {&taken_, 1}, r, next) : fault;
   }
 
+  /// A jump has a length of its own, however short the step: a way that shortens with the step is one that no tangent foresees, as where
+  /// parts that stuck slide.
+  bool is_no_jump(double next) {
+    constexpr double alike = 1.3;  // ways for each share of the loads
+    const double rate = jump_ / (next - at_.done);
+    const bool shortens = tried_.from == at_.done && next < tried_.to && rate <= alike * tried_.rate;
+    tried_ = {at_.done, next, rate};
+    if (!touching(run_.system) || !(shortens || rate <= alike * at_.unforeseen)) return false;
+    at_.unforeseen = rate;
+    return true;
+  }
   /// What memory makes of a state, and its stage for what looks at it.
   void take(const State& reached, double next) {
     taken_ = {stage_at(reached.q, reached.t), reached.lambda};
@@ -249,6 +275,7 @@ class StaticSteps final : public Steps {
     LeastDet least;             // of the steps taken
     bool unstable = false;      // the last one
     long unstable_states = 0;
+    double unforeseen = 0;       // way that no tangent foresaw and was no jump, for each share of the loads [m]
     std::vector<Jumped> jumps;   // told
     std::optional<Ahead> ahead;  // the nearest state that is not stable, or on another branch
   } at_;
@@ -256,9 +283,14 @@ class StaticSteps final : public Steps {
   static constexpr int most_blocks = 30000;  // beyond, the count would cost more than the step
   std::optional<Unstable> unstable_;         // the step tried last
   bool examined_ = true;                     // whether it told
+  bool ends_ = false;                        // it failed for what no shorter step mends
   double jump_ = 0;                          // of the step tried last [m], or 0
+  bool unforeseen_ = false;                  // no jump, but a way that no tangent foresaw
   static constexpr int few_iterations = 5;   // a step that takes no more has not jumped, where telling would cost as much
-  Taken taken_;                              // of the step tried last
+  struct {
+    double from = -1, to = 0, rate = 0;
+  } tried_;      // the last way that might be a jump
+  Taken taken_;  // of the step tried last
   Config no_acceleration_;
 };
 

@@ -309,6 +309,69 @@ TEST(LoadSteps, AThinStripIsBentOverRollers) {
   run(0.03, 0.3, 10);
 }
 
+// Truth: F = 48 E I w/L^3, as above, of a strip that nothing but two rollers and a punch holds, all three drawn as they touch: without
+// friction it is free along itself and across.  With it, the answer is that of any number of steps, to what friction remembers.
+TEST(LoadSteps, AStripIsBentInThreePoints) {
+  constexpr double E = 2.1e11, t = 4e-3, b = 0.02, R = 0.01, half = 0.08, w = 5e-3;
+  Case place("contact");
+  place.use(block_mesh({.n = {40, 2, 2}, .low = Vec3(-0.1, 0, -t / 2), .high = Vec3(0.1, b, t / 2), .regions = {"strip"}}),
+            {Fidelity::nonlinear});
+  const auto force = [&](double friction, int steps) {
+    std::string scene = fmt::format(
+        "gravity = [0, 0, -9.81]\nmaterial.steel = {{E = {}, nu = 0.3, density = 7850}}\nregion.\"*\" = {{material = \"steel\"}}\n"
+        "body = [{{name = \"ram\", mass = 1, com = [0, 0, {}], inertia = [1, 1, 1]}}]\n"
+        "motion = [{{kind = \"translation\", name = \"down\", on = \"ram\", displacement = [0, 0, {}], history = {{t = [0, 1], value = [0, "
+        "1]}}}}]\ntime = {{analysis = \"static\", steps = {}}}\n",
+        E, R + t / 2, -w, steps);
+    for (const auto& [name, x, side, on] :
+         {std::tuple("left", -half, -1., ""), {"right", half, -1., ""}, {"punch", 0., 1., "on = \"ram\"\n"}})
+      scene += fmt::format(
+          "[[obstacle]]\nkind = \"cylinder\"\nname = \"{0}\"\nat = [{1}, 0, {2}]\naxis = [0, 1, 0]\nradius = {3}\n{4}"
+          "[[contact]]\nname = \"at {0}\"\na = \"{0}\"\nb = \"{5}\"\nfriction = {6}\n",
+          name, x, side * (R + t / 2), R, on, side < 0 ? "zmin" : "zmax", friction);
+    place.write("scene.toml", scene);
+    succeeded(place.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
+    EXPECT_LE(place.reported("cuts"), steps) << friction;
+    return -last(Results(place / "run.h5"), "contact/at punch")[2];
+  };
+  const double L = 2 * half - 2 * R * 3 * w / (2 * half), theory = 48 * E * (b * t * t * t / 12) * w / (L * L * L);
+  EXPECT_NEAR(force(0, 4), theory, 0.03 * theory);
+  const double few = force(0.2, 4);
+  EXPECT_NEAR(few, theory, 0.03 * theory);
+  EXPECT_NEAR(force(0.2, 10), few, 1e-3 * few);
+}
+
+// Truth: weight and pressure, on each plate those of what lies above it, wherever the plates were drawn.
+TEST(LoadSteps, WhatIsDrawnApartComesToLie) {
+  constexpr double rho = 7850, side = 0.1, t = 0.01, p = 1e5, weight = rho * side * side * t * g, pressed = p * side * side;
+  const auto plate = [&](const char* name, double z) {
+    return block_mesh({.n = {4, 4, 1}, .low = Vec3(0, 0, z), .high = Vec3(side, side, z + t), .regions = {name}});
+  };
+  Case place("contact");
+  place.use(together(plate("low", 2e-3), plate("up", t + 5e-3)), {Fidelity::nonlinear, Fidelity::rigid});
+  place.write(
+      "scene.toml",
+      fmt::format("gravity = [0, 0, {}]\nmaterial.steel = {{E = 2.1e11, nu = 0.3, density = {}}}\nregion.\"*\" = {{material = \"steel\"}}\n"
+                  "obstacle = [{{kind = \"plane\", name = \"floor\"}}]\n"
+                  "contact = [{{name = \"on the floor\", a = \"floor\", b = \"low\", friction = 0.2}},\n"
+                  "{{name = \"on the other\", a = \"low\", b = \"up\", friction = 0.2}}]\n"
+                  "load = [{{kind = \"pressure\", name = \"p\", on = \"upzmax\", pressure = {}}}]\n"
+                  "time = {{analysis = \"static\", steps = 2}}\n",
+                  -g, rho, p));
+  succeeded(place.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
+  const Results r(place / "run.h5");
+  EXPECT_NEAR(last(r, "contact/on the floor")[2], pressed + 2 * weight, 1e-6 * pressed);
+  EXPECT_NEAR(last(r, "contact/on the other")[2], pressed + weight, 1e-3 * pressed) << "of a pressure that turns with the plate";
+  place.use(plate("low", 2e-3), {Fidelity::nonlinear});
+  place.write("scene.toml",
+              "gravity = [0, 0, -9.81]\nmaterial.steel = {E = 2.1e11, nu = 0.3, density = 7850}\nregion.low = {material = \"steel\"}\n"
+              "obstacle = [{kind = \"cylinder\", name = \"post\", at = [1, 0, 0], axis = [0, 0, 1], radius = 0.1}]\n"
+              "contact = [{name = \"beside it\", a = \"post\", b = \"low\"}]\ntime = {analysis = \"static\", steps = 2}\n");
+  const Ran falls = place.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5");
+  expect_end(falls, 3, "\"low\" is free to move");
+  expect_words(falls.err, "m apart");
+}
+
 // Truth: two leaves that rub on each other bear F as two beams side by side, F L^3/(6 E I), but for what friction takes, mu t/L of it;
 // where loads only grow, the answer is that of any number of steps.
 TEST(LoadSteps, TwoLeavesRubOnEachOther) {
