@@ -64,8 +64,7 @@ class LightSolver final : public SerialKktSolver {
     factors_ = is_klu_ ? make_klu(n_dense == A_.n()) : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_, joined(cliques));
     is_definite_ = kind == "cholesky";
     aside_.reset(), rest_ = 0;
-    factored_ = ready_ = lags_ = false;
-    weight_.clear();
+    factored_ = ready_ = lags_ = false, changed_ = true;
   }
 
   void zero() override { A_.zero(), factored_ = false, changed_ = true; }
@@ -122,9 +121,11 @@ class LightSolver final : public SerialKktSolver {
   /// GMRES on the matrix, with the factors of this one or an earlier one.
   SolveReport solve_iterated(std::span<const double> b, std::span<double> x, double tolerance) {
     tolerance = std::max(tolerance, 1e-10);  // about what round-off leaves of stiff scenes
-    if (weight_.empty()) find_weights();
     int before = 0;
-    if (std::exchange(changed_, false) && ready_ && lags_) ready_ = factors_->follow(A_);
+    if (std::exchange(changed_, false)) {
+      find_weights();  // those of another matrix may leave out rows: of a mass that was added, of a contact that has opened
+      if (ready_ && lags_) ready_ = factors_->follow(A_);
+    }
     if (ready_) {
       const int allowed = least_iterations + static_cast<int>(factors_->cost());
       SolveReport report = iterate(b, x, tolerance, allowed);
@@ -173,7 +174,6 @@ class LightSolver final : public SerialKktSolver {
     if (!factor())
       return is_definite_ ? SolveReport::failed("not positive definite: the flexible part may be unstable or held by too little")
                           : SolveReport::singular();
-    find_weights();
     const SolveReport report = iterate(b, x, tolerance, 60);
     rate_ = report.iterations / -std::log10(std::clamp(report.residual, 1e-12, 0.5));
     excess_ = 0;
