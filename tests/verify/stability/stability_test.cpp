@@ -250,14 +250,15 @@ TEST(StaticStability, IsTheSameOnRanksWithJoints) {
       EXPECT_NEAR(std::stod(all.substr(at + 21)) * 1.3, 1, 0.01) << ranks << solver << all;
     }
     if (ranks > 2) continue;  // the ways to another branch take a minute there
-    for (const char* solver : {"auto", "cholesky", "umfpack"}) {
-      if (ranks > 1 && solver[0] != 'a') continue;
-      const Ran lost = solve(fmt::format("analysis = \"static\"\nsteps = 4\n[solver]\nkind = \"{}\"\n", solver), 1.3);
-      EXPECT_NE(lost.err.find("the equilibrium is not stable"), std::string::npos) << ranks << solver << lost.err;
-      EXPECT_NE(lost.err.find("The run goes on from a stable one"), std::string::npos) << ranks << solver << lost.err;
-      const auto tip = c.results().history("probe/tip");
-      EXPECT_NEAR(std::hypot(tip(tip.rows() - 1, 1), tip(tip.rows() - 1, 2)), elastica(1.3), 0.03) << ranks << solver;
-    }
+    const Ran lost = solve("analysis = \"static\"\nsteps = 4\n", 1.3);
+    EXPECT_NE(lost.err.find("the equilibrium is not stable"), std::string::npos) << ranks << lost.err;
+    EXPECT_NE(lost.err.find("The run goes on from a stable one"), std::string::npos) << ranks << lost.err;
+    const auto tip = c.results().history("probe/tip");
+    EXPECT_NEAR(std::hypot(tip(tip.rows() - 1, 1), tip(tip.rows() - 1, 2)), elastica(1.3), 0.03) << ranks;
+    for (const char* solver : {"cholesky", "umfpack"})  // a step that is tried after the look at stability is judged by its own matrix
+      if (ranks == 1)
+        expect_words(c.run(fmt::format("hilo-solve scene.toml {} -o run.h5{} --set solver.kind={}", parts, load(1.3), solver)).err,
+                     "the equilibrium is not stable");
     const std::string start = "start = \"equilibrium\"\nend = 2e-4\nstep = 1e-4\n";
     EXPECT_EQ(solve(start, 0.95).err.find("not stable"), std::string::npos) << ranks;
     const Ran bent = solve(start, 1.3);
