@@ -352,6 +352,8 @@ NewtonReport Newton::take() {
       return fail("Newton does not converge, nor with damped corrections");
     if (!damped_ && report_.correction <= options_.tolerance * 1e-2) {  // far below what the next one could change
       evaluate(false);
+      if (report_.correction == 0 && report_.residual > std::max(options_.tolerance, 0.5 * last_residual_))
+        return fail(solver_.name() + ": forces are open, and the solve moves nothing");
       if (!is_revised()) return accept(), report_;
       near = true, moved = false, previous = 1e300;
       continue;

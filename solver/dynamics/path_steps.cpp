@@ -274,28 +274,15 @@ class PathSteps final : public Steps {
   }
   /// Where points of contact come and go so that a step along the path does not converge: a load step, damped, and from soft contacts.
   bool find_by_loads(Point& to) {
-    give_up();
     const double p = std::min(1.0, at_.share + at_.radius / std::sqrt(2.0));
-    Config q = run_.state.q;
-    Numbers lambda = run_.state.lambda;
+    Config q;
+    Numbers lambda;
     NewtonOptions options = run_.newton;
     options.least_share = 0.03;  // as load steps
     LoadStep step{run_.state.t, at_.share};
-    const auto begin_again = [&] { give_up(), q = run_.state.q, lambda = run_.state.lambda; };
-    iterations_ = 0;
-    report_ = soft_.find(
-        options, begin_again,
-        [&](const NewtonOptions& how, SoftContacts::Turn turn) {
-          run_.system.commit(run_.state.q);
-          LoadStep same{run_.state.t, at_.share};  // what soft contacts foresee says nothing of a jump
-          NewtonReport r = equilibrium(run_.system, *run_.solver, q, lambda, p * end_, p, false, how,
-                                       !turn.first         ? nullptr
-                                       : soft_.begins_soft ? &same
-                                                           : &step);
-          iterations_ += r.iterations, run_.report.iterations += r.iterations;
-          return r;
-        },
-        q);
+    const int before = run_.report.iterations;
+    report_ = soft_.find(step, p * end_, p, options, q, lambda);
+    iterations_ = run_.report.iterations - before;
     pace_ = most_iterations / 2;
     to.on.rise = at_.rise, to.so_far = at_.radius;
     if (!report_.converged) return why_ = report_.reason, false;
@@ -429,7 +416,7 @@ class PathSteps final : public Steps {
     std::vector<Turn> turns;
   } at_;
   int iterations_ = 0, pace_ = 0;  // of the step tried last; as many as the length of the next one goes by
-  SoftContacts soft_{run_.system};
+  SoftContacts soft_{run_};
   std::string why_;
   NewtonReport report_;
   Taken taken_;

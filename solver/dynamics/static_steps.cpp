@@ -129,42 +129,15 @@ class StaticSteps final : public Steps {
     ends_ = false;
     System& system = run_.system;
     const State& state = run_.state;
-    reached.q = state.q, reached.lambda = state.lambda, reached.t = next * end_;
+    reached.t = next * end_;
     NewtonOptions options = run_.newton;
     options.least_share = 0.03;  // a smaller step costs less
     LoadStep step{state.t, at_.done};
-    const auto solve = [&](const NewtonOptions& how, LoadStep* from) {
-      r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, false, how, from);
-      run_.report.iterations += r.iterations;
-    };
-    const auto begin_again = [&] {
-      system.commit(state.q), search(0);
-      reached.q = state.q, reached.lambda = state.lambda;
-    };
-    r = soft_.find(
-        options, begin_again,
-        [&](const NewtonOptions& how, SoftContacts::Turn turn) {
-          system.commit(state.q);
-          LoadStep same{state.t, at_.done};  // what soft contacts foresee says nothing of a jump
-          solve(how, !turn.first ? nullptr : soft_.begins_soft ? &same : &step);
-          return r;
-        },
-        reached.q);
-    if (!r.converged && system.traits().slides) {
-      begin_again();
-      NewtonOptions along = options;
-      along.searches = along.patient = true, along.max_iterations = std::max(options.max_iterations, 60);
-      solve(along, &step);
-    }
-    if (!r.converged && r.least_det.det > 0 && at_.step <= std::ldexp(1.0 / n_, -4)) {  // a sharp bend: held back by a mass that fades
-      reached.q = state.q, reached.lambda = state.lambda;
-      system.commit(state.q);
-      r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, true, options);
-      run_.report.iterations += r.iterations;
-    }
-    const bool from_rest = !r.converged && touching(system);
+    r = soft_.find(step, reached.t, next, options, reached.q, reached.lambda);
+    const bool sharp = r.least_det.det > 0 && at_.step <= std::ldexp(1.0 / n_, -4);  // a sharp bend
+    const bool from_rest = !r.converged && (sharp || touching(system));
     if (from_rest) {
-      begin_again();
+      system.commit(state.q), system.settle(false);
       State at = state;
       const RestReport rest = come_to_rest(run_, at, {reached.t, next});
       r = rest, ends_ = rest.ends;
@@ -279,7 +252,7 @@ class StaticSteps final : public Steps {
     std::vector<Jumped> jumps;   // told
     std::optional<Ahead> ahead;  // the nearest state that is not stable, or on another branch
   } at_;
-  SoftContacts soft_{run_.system};
+  SoftContacts soft_{run_};
   static constexpr int most_blocks = 30000;  // beyond, the count would cost more than the step
   std::optional<Unstable> unstable_;         // the step tried last
   bool examined_ = true;                     // whether it told

@@ -7,7 +7,7 @@
 
 namespace hilo::test {
 
-class DenseKkt final : public KktSolver {
+class DenseKkt : public KktSolver {
  public:
   Eigen::MatrixXd A;
   void structure(const Cliques& cliques, const BlockMap& map) override {
