@@ -16,9 +16,9 @@
 namespace hilo {
 namespace {
 
-constexpr int klu_below = 900;  // unknowns; where a quarter of them are of bodies and multipliers, a little more
-constexpr int mixed_klu_below = 1500;
-constexpr int rigid_klu_below = 30000;  // where all of them are; beyond, while factors stay thin
+constexpr int klu_below = 1500;         // unknowns, and
+constexpr double klu_work = 4e5;        // multiplications of a factorisation, where there are cells: some hundred nodes of a block
+constexpr int rigid_klu_below = 30000;  // unknowns where there are none; beyond, while factors stay thin
 constexpr double thin = 60;             // multiplications a factor's entry
 constexpr int net_from = 600;           // unknowns of a net of bodies, without multipliers, that UMFPACK does faster,
 constexpr double thin_net = 25;         // unless its factors are thinner than this
@@ -26,9 +26,14 @@ constexpr int dense_at_most = 1200;     // unknowns of bodies and multipliers be
 constexpr int least_iterations = 10;    // that lagged factors are given
 constexpr double many_more = 4;         // iterations than with fresh factors: what the factors can follow is more than round-off
 
-/// What a factorisation by columns takes for each of its entries, by the pattern: some tens for chains, trees and rows of loops, hundreds
-/// for nets, which a multifrontal one does faster.
-double work_per_entry(const BlockCsr& A) {
+/// What a factorisation by columns takes, by the pattern.
+struct FactorWork {
+  double multiplications, entries;
+  /// Some tens for chains, trees and rows of loops, hundreds for nets, which a multifrontal one does faster.
+  double per_entry() const { return multiplications / entries; }
+};
+
+FactorWork factor_work(const BlockCsr& A) {
   std::vector<int> start{0}, column;
   for (int i = 0; i < A.n_blocks(); ++i) {
     const auto list = A.neighbours(i);
@@ -37,8 +42,8 @@ double work_per_entry(const BlockCsr& A) {
   }
   std::vector<int> order(A.n_blocks());
   double info[AMD_INFO];
-  if (amd_order(A.n_blocks(), start.data(), column.data(), order.data(), nullptr, info) < 0) return 0;
-  return 3 * info[AMD_NMULTSUBS_LU] / (2 * info[AMD_LNZ] + A.n_blocks());
+  if (amd_order(A.n_blocks(), start.data(), column.data(), order.data(), nullptr, info) < 0) return {0, 1};
+  return {27 * info[AMD_NMULTSUBS_LU], 9 * (2 * info[AMD_LNZ] + A.n_blocks())};
 }
 
 class LightSolver final : public SerialKktSolver {
@@ -51,14 +56,11 @@ class LightSolver final : public SerialKktSolver {
     for (size_t i = 0; i < map.global.size(); ++i) is_dense_[i] = map.global[i] >= map.first_dense + map.n_with_cells;
     const auto n_dense = 3 * std::count(is_dense_.begin(), is_dense_.end(), 1);
     std::string kind = kind_;
-    if (kind == "light" && n_dense == A_.n() && A_.n() >= rigid_klu_below && work_per_entry(A_) < thin) kind = "klu";
-    if (kind == "light")
-      kind = A_.n() < (n_dense == A_.n()      ? rigid_klu_below
-                       : 4 * n_dense > A_.n() ? mixed_klu_below
-                                              : klu_below)
-                 ? "klu"
-             : n_dense <= dense_at_most && 2 * n_dense < A_.n() ? "cholesky"
-                                                                : "umfpack";
+    if (kind == "light") {
+      const bool serves = n_dense == A_.n() ? A_.n() < rigid_klu_below || factor_work(A_).per_entry() < thin
+                                            : A_.n() < klu_below && factor_work(A_).multiplications < klu_work;
+      kind = serves ? "klu" : n_dense <= dense_at_most && 2 * n_dense < A_.n() ? "cholesky" : "umfpack";
+    }
     is_klu_ = kind == "klu";
     may_be_net_ = is_klu_ && kind_ == "light" && n_dense == A_.n() && A_.n() >= net_from && A_.n() < rigid_klu_below;
     factors_ = is_klu_ ? make_klu(n_dense == A_.n()) : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_, joined(cliques));
@@ -75,7 +77,7 @@ class LightSolver final : public SerialKktSolver {
 
   SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override {
     if (A_.n() == 0) return {};  // nothing is free to move
-    if (std::exchange(may_be_net_, false) && has_whole_diagonal() && work_per_entry(A_) >= thin_net)
+    if (std::exchange(may_be_net_, false) && has_whole_diagonal() && factor_work(A_).per_entry() >= thin_net)
       is_klu_ = false, factors_ = make_umfpack(), is_definite_ = false;
     return is_klu_ ? solve_refined(b, x) : solve_iterated(b, x, tolerance);
   }

@@ -42,8 +42,9 @@ Problem cut(Problem p, int first) {
   return p;
 }
 
-TEST(Light, ChoosesItsFactorsBySize) {
+TEST(Light, ChoosesItsFactorsByTheirWork) {
   EXPECT_EQ(Light(elastic_bar(6, 2, 2, 20)).solver->name(), "light (KLU)");
+  EXPECT_EQ(Light(elastic_bar(6, 6, 5, 20)).solver->name(), "light (CHOLMOD)") << "small, but of a compact mesh";
   EXPECT_EQ(Light(elastic_bar(30, 4, 4, 20)).solver->name(), "light (CHOLMOD)");
 }
 

@@ -21,7 +21,7 @@ struct Press {
 };
 
 TEST(BlockPress, InFourStepsTakesFewIterationsAndEndsWhereManyStepsDo) {
-  for (const auto& [shape, nu, most] : {Press{Shape::hex8, 0.3, 6}, Press{Shape::hex8, 0.499, 10}, Press{Shape::hex8, 0.4999, 20},
+  for (const auto& [shape, nu, most] : {Press{Shape::hex8, 0.3, 8}, Press{Shape::hex8, 0.499, 12}, Press{Shape::hex8, 0.4999, 20},
                                         Press{Shape::hex20r, 0.3, 10}, Press{Shape::hex20r, 0.499, 14}, Press{Shape::hex20r, 0.4999, 34}}) {
     SCOPED_TRACE(std::string(info(shape).name) + " " + std::to_string(nu));
     SceneCase c(scene);
