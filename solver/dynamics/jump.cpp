@@ -125,4 +125,14 @@ double BranchJump::between(const Loaded& from, const Loaded& to, std::optional<C
   return jump;
 }
 
+bool UnforeseenWays::shorten(double begin, double end, double way) {
+  constexpr double alike = 1.3;
+  const double now = way / (end - begin);
+  const bool beside_longer = from == begin && end < to && now <= alike * rate;
+  from = begin, to = end, rate = now;
+  if (!beside_longer && now > alike * last) return false;
+  last = now;
+  return true;
+}
+
 }  // namespace hilo

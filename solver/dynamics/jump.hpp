@@ -37,4 +37,13 @@ class BranchJump {
   Config zero_;
 };
 
+/// Where friction turns, parts go ways that no tangent foresees and that are no jumps: they shorten with the step.
+struct UnforeseenWays {
+  double from = -1, to = 0, rate = 0;  // of the step tried last: shares of the loads, and its way for each [m]
+  double last = 0;                     // rate of the step before, or 0 where all was foreseen
+  /// Whether a way [m] between two shares of the loads is shorter than that of a longer step from the same share was, or for each share no
+  /// longer than that of the step before.
+  bool shorten(double begin, double end, double way);
+};
+
 }  // namespace hilo

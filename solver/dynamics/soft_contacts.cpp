@@ -48,7 +48,9 @@ NewtonReport SoftContacts::find(LoadStep& step, double t, double ramp, const New
   if (report.converged || !touching(system)) return report;
   begin_again();
   begins_soft = !begins_soft;
-  return either();
+  report = either();
+  if (!report.converged) begins_soft = !begins_soft;
+  return report;
 }
 
 }  // namespace hilo

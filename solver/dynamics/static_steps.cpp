@@ -87,7 +87,7 @@ class StaticSteps final : public Steps {
       std::swap(state, reached);
       if (at_.ahead && (next >= at_.ahead->next || system.traits().remembers)) at_.ahead.reset();
       at_.unstable_states += at_.unstable;
-      if (!unforeseen_) at_.unforeseen = 0;
+      if (!unforeseen_) at_.ways.last = 0;
       if (jump_ > 0) tell_jump(next);
       ++run_.report.steps;
       at_.done = next, at_.step = std::min(1.0 / n_, 2 * at_.step);
@@ -156,24 +156,13 @@ class StaticSteps final : public Steps {
       jump_ =
           BranchJump(system, *run_.solver, options)
               .between({state.q, state.lambda, state.t, at_.done}, {reached.q, reached.lambda, reached.t, next}, step.foreseen, factored);
-    unforeseen_ = jump_ > 0 && is_no_jump(next);
+    unforeseen_ = jump_ > 0 && touching(system) && at_.ways.shorten(at_.done, next, jump_);
     if (unforeseen_) jump_ = 0;
     take(reached, next);
     const std::string fault = system.fault(reached.q);
     return fault.empty() ? run_.audit->look(state.q, reached, {&taken_, 1}, r, next) : fault;
   }
 
-  /// A jump has a length of its own, however short the step: a way that shortens with the step is one that no tangent foresees, as where
-  /// parts that stuck slide.
-  bool is_no_jump(double next) {
-    constexpr double alike = 1.3;  // ways for each share of the loads
-    const double rate = jump_ / (next - at_.done);
-    const bool shortens = tried_.from == at_.done && next < tried_.to && rate <= alike * tried_.rate;
-    tried_ = {at_.done, next, rate};
-    if (!touching(run_.system) || !(shortens || rate <= alike * at_.unforeseen)) return false;
-    at_.unforeseen = rate;
-    return true;
-  }
   /// What memory makes of a state, and its stage for what looks at it.
   void take(const State& reached, double next) {
     taken_ = {stage_at(reached.q, reached.t), reached.lambda};
@@ -248,7 +237,7 @@ class StaticSteps final : public Steps {
     LeastDet least;             // of the steps taken
     bool unstable = false;      // the last one
     long unstable_states = 0;
-    double unforeseen = 0;       // way that no tangent foresaw and was no jump, for each share of the loads [m]
+    UnforeseenWays ways;
     std::vector<Jumped> jumps;   // told
     std::optional<Ahead> ahead;  // the nearest state that is not stable, or on another branch
   } at_;
@@ -260,10 +249,7 @@ class StaticSteps final : public Steps {
   double jump_ = 0;                          // of the step tried last [m], or 0
   bool unforeseen_ = false;                  // no jump, but a way that no tangent foresaw
   static constexpr int few_iterations = 5;   // a step that takes no more has not jumped, where telling would cost as much
-  struct {
-    double from = -1, to = 0, rate = 0;
-  } tried_;      // the last way that might be a jump
-  Taken taken_;  // of the step tried last
+  Taken taken_;                              // of the step tried last
   Config no_acceleration_;
 };
 

@@ -9,7 +9,7 @@ import sys
 
 repo, tools, out = (os.path.abspath(a) for a in sys.argv[1:4])
 limit = int(os.environ.get("LIMIT", 300))  # seconds that a row may take
-most = int(os.environ.get("MOST", 128 if (os.cpu_count() or 1) >= 16 else 32))  # subdomains: more ranks take minutes on two cores
+most = int(os.environ.get("MOST", 128 if (os.cpu_count() or 1) >= 16 else 16))  # subdomains: more ranks take minutes on two cores
 wanted = sys.argv[4:] or ["serial", "block", "ranks", "subdomains"]
 sys.path.insert(0, os.path.join(repo, "tests/cli"))
 import on_ranks
