@@ -41,10 +41,12 @@ std::int64_t Builder::put_active_nodes_first() {
   };
   std::set<std::string_view> sections;
   for (const KindSchema& kind : scene_schema()) sections.insert(kind.section);
+  sections.erase("quantity");  // looks at results
   for (const std::string_view section : sections)
     for (const Entry& e : scene_.entries(section))
       for (const auto& [key, value] : e.values)
-        for (const std::string& text : value.texts) named[text] |= !takes_bodies(e);
+        for (const std::string& text : value.texts)
+          if (key != "name") named[text] |= !takes_bodies(e);
   for (const std::string& name : mesh.all_names()) {
     const auto it = named.find(name);
     const int region = mesh.find_region(name);
