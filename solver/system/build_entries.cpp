@@ -83,7 +83,7 @@ void Builder::add_stations() {
       } else if (e.has("at")) {
         if (s.sensor)
           throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, and a single point of it has no axes", e.label(), e.text("on")),
-                      "name a set of nodes there");
+                      found.is_region ? "name a set of nodes there" : "without at it is the mean of the set, whose axes turn with it");
         if (const int nearest = nearest_owned(found.nodes, e.vector3("at")); nearest >= 0) s.nodes.emplace_back(nearest, 1);
         s.mean = e.vector3("at");
       } else {
