@@ -62,6 +62,8 @@ class Archive {
   explicit Archive(const Shares* shares = nullptr) : shares_(shares) {}
   explicit Archive(Kept kept, const Shares* shares = nullptr) : kept_(std::move(kept)), shares_(shares), restores_(true) {}
   bool restores() const { return restores_; }
+  /// Of a second solution beside that of the run, which nothing looks at: what records what is seen has no part in it.
+  bool is_aside = false;
   const Kept& kept() const { return kept_; }
   /// All that was kept is restored.
   bool is_at_end() const { return at_ == kept_.bytes.size(); }

@@ -31,18 +31,23 @@ void Companion::renew_solver() { solver_ = make_solver_(); }
 
 void Companion::begin(const State& s) {
   state_ = s, start_ = s.q, waiting_ = 0, begun_ = true;
+  memory_ = memory_now();
+}
+
+Kept Companion::memory_now() {
   Archive now;
+  now.is_aside = true;
   system_.archive(now);
-  memory_ = now.kept();
+  return now.kept();
 }
 
 /// The system's memory becomes that of the other solution.
 void Companion::swap_memory() {
-  Archive now;
-  system_.archive(now);
+  Kept now = memory_now();
   Archive other(std::move(memory_));
+  other.is_aside = true;
   system_.archive(other);
-  memory_ = now.kept();
+  memory_ = std::move(now);
 }
 
 void Companion::follow(const State& s, double added, ErrorEstimate& estimate) {
@@ -98,11 +103,7 @@ bool Companion::try_step(double to) {
 void Companion::archive(Archive& a) {
   a("companion", begun_, waiting_, state_, start_, untold_);
   if (!begun_) return;
-  if (a.restores()) {
-    Archive now;
-    system_.archive(now);
-    memory_ = now.kept();
-  }
+  if (a.restores()) memory_ = memory_now();
   swap_memory();
   system_.archive(a);
   integrator_->archive(a, system_);

@@ -19,18 +19,17 @@ System::Loose loose(const System& system, const Config& q, double t, double ramp
   return system.loose(s, with_loads);
 }
 
-/// Which contacts begin apart, behind what is said, or "".
-std::string apart(const System& system, const Config& q, const char* behind) {
+/// Which contacts begin apart, to be said last, or "".
+std::string apart(const System& system, const Config& q) {
   const std::string found = touching(system) ? touching(system)->apart(q) : "";
-  return found.empty() ? "" : behind + found + ", and what does not touch holds nothing";
+  return found.empty() ? "" : "; " + found + ", and what does not touch holds nothing";
 }
 
 }  // namespace
 
 void require_held(const System& system, const Config& q, double t, double ramp, const std::string& where) {
   if (const auto found = loose(system, q, t, ramp, true); !found.text.empty())
-    throw Error(where, found.text + ": a static analysis has no answer",
-                "hold it by a motion, a joint or a spring" + apart(system, q, "; "));
+    throw Error(where, found.text + ": a static analysis has no answer", "hold it by a motion, a joint or a spring" + apart(system, q));
 }
 
 /// A translation that is free here is free for ever where joints and springs feel nothing of a long way along it.
@@ -68,7 +67,7 @@ void require_rest(const System& system, const Config& q, const std::string& wher
 
 std::string unheld(const System& system, const Config& q) {
   const auto found = loose(system, q, 0, 1, false);
-  return found.text.empty() ? "" : "; " + found.text + apart(system, q, "; ");
+  return found.text.empty() ? "" : "; " + found.text + apart(system, q);
 }
 
 }  // namespace hilo

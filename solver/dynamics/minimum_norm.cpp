@@ -13,6 +13,25 @@ constexpr int klu_below = 200;   // blocks; beyond, nested dissection keeps the 
 constexpr double shift = 1e-10;  // of unknowns whose rows are unit ones together
 constexpr double least = 1e-26;  // of squares of gradients in a block; what is below is round-off
 
+/// T with T S T^T diagonal, for S symmetric, semidefinite: Gauss' elimination from the largest diagonal on.  No entry is above 1 but by
+/// round-off.
+Mat3 apart(Mat3 S) {
+  Mat3 T = Mat3::Identity();
+  const auto take = [&](int p, int q) {  // what q has of p
+    const double share = S(p, p) > 0 ? std::clamp(S(q, p) / S(p, p), -1.0, 1.0) : 0;
+    S.row(q) -= share * S.row(p);
+    S.col(q) -= share * S.col(p);
+    T.row(q) -= share * T.row(p);
+  };
+  int first = 0;
+  S.diagonal().maxCoeff(&first);
+  int second = (first + 1) % 3, third = (first + 2) % 3;
+  take(first, second), take(first, third);
+  if (S(second, second) < S(third, third)) std::swap(second, third);
+  take(second, third);
+  return T;
+}
+
 }  // namespace
 
 MinimumNorm::MinimumNorm(const System& system) : system_(system) {
@@ -46,9 +65,9 @@ void MinimumNorm::take_rows(const Stage& stage) {
   };
   std::vector<Mat3> axes(A_.n_blocks(), Mat3::Zero());  // of unknowns, whose rows next to each other are then near unit ones
   each_part([&](int block, const Vec3& g) { axes[block] += g * g.transpose(); });
-  for (Mat3& S : axes) S = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvectors().eval();
+  for (Mat3& S : axes) S = apart(S);
   std::vector<Vec3> scale(axes.size(), Vec3::Zero());  // along the axes of each block, by rows: those of the sum end in round-off
-  each_part([&](int block, Eigen::Map<Vec3> g) { g = (axes[block].transpose() * g).eval(), scale[block] += g.cwiseAbs2(); });
+  each_part([&](int block, Eigen::Map<Vec3> g) { g = (axes[block] * g).eval(), scale[block] += g.cwiseAbs2(); });
   for (Vec3& s : scale) s = (s.array() > least * s.maxCoeff()).select(s.cwiseSqrt().cwiseInverse(), 0).eval();
   each_part([&](int block, Eigen::Map<Vec3> g) { g.array() *= scale[block].array(); });
   A_.zero();
@@ -109,7 +128,7 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
     Eigen::VectorXd r = f, z(f.size()), p = Eigen::VectorXd::Zero(f.size());
     best = out, left = r;
     double before = 1;
-    for (int pass = 0, since = 0; pass < passes && since < 3 && left.norm() > 1e-15 * size; ++pass) {
+    for (int pass = 0, since = 0; pass < passes && since < 3 && left.norm() > 1e-14 * size; ++pass) {
       factors_->solve(r.data(), z.data());
       const double now = r.dot(z);
       if (!(now > 0)) break;

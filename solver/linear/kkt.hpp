@@ -76,7 +76,7 @@ class KktSolver {
   virtual bool repeats_cheaply() const { return false; }
   /// Eigenvalues below zero of K, assembled last, on the motions that the rows from block `first_row` on allow (linear/inertia); nothing
   /// where that is not known.
-  virtual std::optional<int> eigenvalues_below_zero(int /*first_row*/) const { return {}; }
+  virtual std::optional<int> eigenvalues_below_zero(int /*first_row*/) { return {}; }
   virtual std::string name() const = 0;
   /// Seconds so far that went into factors and preconditioners.
   virtual double set_up_seconds() const { return 0; }

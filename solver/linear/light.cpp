@@ -25,6 +25,7 @@ constexpr double thin_net = 25;         // unless its factors are thinner than t
 constexpr int dense_at_most = 1200;     // unknowns of bodies and multipliers beside a Cholesky factor
 constexpr int least_iterations = 10;    // that lagged factors are given
 constexpr double many_more = 4;         // iterations than with fresh factors: what the factors can follow is more than round-off
+constexpr double tiny = 1e-280;         // what is at rest but for numbers below the normal ones has no relative residual
 
 /// What a factorisation by columns takes, by the pattern.
 struct FactorWork {
@@ -82,7 +83,14 @@ class LightSolver final : public SerialKktSolver {
     return is_klu_ ? solve_refined(b, x) : solve_iterated(b, x, tolerance);
   }
   bool repeats_cheaply() const override { return is_klu_; }
-  std::optional<int> eigenvalues_below_zero(int first_row) const override { return hilo::eigenvalues_below_zero(A_, first_row); }
+  std::optional<int> eigenvalues_below_zero(int first_row) override {
+    if (is_definite_ && std::ranges::none_of(is_dense_, std::identity())) {  // their factors tell as well, and serve the next matrix
+      const Stopwatch watch(set_up_);
+      ready_ = factors_->factor(A_);
+      if (ready_) return excess_ = 0, 0;
+    }
+    return hilo::eigenvalues_below_zero(A_, first_row);
+  }
   std::string name() const override { return fmt::format("light ({})", factors_->name()); }
   double bytes() const override { return A_.bytes() + factors_->bytes(); }
   double set_up_seconds() const override { return set_up_; }
@@ -112,7 +120,10 @@ class LightSolver final : public SerialKktSolver {
     factors_->solve(b.data(), x.data());
     SolveReport report;
     for (int pass = 0;; ++pass) {
-      report = check(b, x);
+      report.residual = find_residual(b, x);
+      if (!std::isfinite(report.residual)) return SolveReport::singular(" to working precision", report.residual);
+      if (report.residual > 1e-6 && backward_error(b, x) > 1e-12)
+        report.ok = false, report.message = fmt::format("linear residual {:.1e}", report.residual);
       if (!report.ok || report.residual < 1e-11 || pass == passes) return report;
       correction_.resize(b.size());
       factors_->solve(residual_.data(), correction_.data());
@@ -196,10 +207,10 @@ class LightSolver final : public SerialKktSolver {
     SolveReport report;
     int iterations = gmres_.solve(multiply, precondition, weight_, b, x, tolerance, most).iterations;
     for (bool again = true;; again = false) {
-      report = check(b, x);
-      const double left = norm > 0 ? weighted(residual_) / norm : 0;
-      const bool done = left <= 2 * tolerance || report.ok;
-      if (!std::isfinite(left) || done || !again || iterations >= most) {  // the recurrence may flatter: once more from what is left
+      const double residual = find_residual(b, x), left = norm > 0 ? weighted(residual_) / norm : 0;
+      const bool finite = std::isfinite(left),
+                 done = finite && (left <= 2 * tolerance || residual <= 1e-12 || backward_error(b, x) <= 1e-15);
+      if (!finite || done || !again || iterations >= most) {  // the recurrence may flatter: once more from what is left
         if (!done) report.message = fmt::format("no convergence in {} iterations, residual {:.1e}", iterations, left);
         report.ok = done, report.residual = left, report.iterations = iterations;
         return report;
@@ -210,25 +221,29 @@ class LightSolver final : public SerialKktSolver {
     }
   }
 
-  /// The residual by multiplication, into residual_.
-  SolveReport check(std::span<const double> b, std::span<const double> x) {
-    residual_.resize(b.size()), sums_.resize(b.size());
-    A_.multiply(x.data(), residual_.data(), sums_.data());
-    double worst = 0, norm = 0, terms = 0;  // of the residual, of b, and of the terms summed
+  /// residual_ := b - A x by multiplication; its largest number over that of b.
+  double find_residual(std::span<const double> b, std::span<const double> x) {
+    residual_.resize(b.size());
+    A_.multiply(x.data(), residual_.data());
+    double worst = 0, norm = 0;
     for (size_t i = 0; i < b.size(); ++i) {
       const double s = residual_[i] = b[i] - residual_[i];
-      norm = std::max(norm, std::abs(b[i])), terms = std::max(terms, sums_[i] + std::abs(b[i]));
+      norm = std::max(norm, std::abs(b[i]));
       if (!(std::abs(s) <= worst)) worst = std::abs(s);
     }
-    constexpr double tiny = 1e-280;  // what is at rest but for numbers below the normal ones has no relative residual
-    SolveReport report;
-    report.residual = norm > tiny ? worst / norm : worst;
-    if (!std::isfinite(report.residual)) return SolveReport::singular(" to working precision", report.residual);
-    // an ill-conditioned matrix leaves no better residual than round-off of what the rows sum
-    const double backward = terms > tiny ? worst / terms : 0;
-    if (report.residual > (is_klu_ ? 1e-6 : 1e-12) && backward > (is_klu_ ? 1e-12 : 1e-15))
-      report.ok = false, report.message = fmt::format("linear residual {:.1e}", report.residual);
-    return report;
+    return norm > tiny ? worst / norm : worst;
+  }
+
+  /// The largest residual of x over the largest sum of terms' sizes in a row: an ill-conditioned matrix leaves round-off of these.
+  double backward_error(std::span<const double> b, std::span<const double> x) {
+    residual_.resize(b.size()), sums_.resize(b.size());
+    A_.multiply(x.data(), residual_.data(), sums_.data());
+    double worst = 0, terms = 0;
+    for (size_t i = 0; i < b.size(); ++i) {
+      residual_[i] = b[i] - residual_[i];
+      worst = std::max(worst, std::abs(residual_[i])), terms = std::max(terms, sums_[i] + std::abs(b[i]));
+    }
+    return terms > tiny ? worst / terms : 0;
   }
 
   /// Whether no row is of a multiplier.

@@ -53,12 +53,12 @@ class Store {
   template <class T>
   std::int64_t reserve(const std::string& array, std::vector<std::int64_t> shape, const std::string& unit = "",
                        const std::string& meaning = "");
-  /// An array that grows along its first axis; append() adds one row.
+  /// An array that grows along its first axis; append() adds rows.
   template <class T>
   void start_rows(const std::string& array, std::vector<std::int64_t> row_shape, const std::string& unit = "",
                   const std::string& meaning = "", const std::string& time = "");
   template <class T>
-  void append(const std::string& array, std::span<const T> row);
+  void append(const std::string& array, std::span<const T> rows);
   /// Are the arrays of this group members of a table?
   bool is_table(const std::string& group) const;
   /// Many growing arrays of `width` columns as one, which costs far less: each is read as GROUP/MEMBER, as if it were apart.  `members`:

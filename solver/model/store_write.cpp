@@ -218,12 +218,13 @@ void Store::append_table(const std::string& group, std::span<const T> row) {
 }
 
 template <class T>
-void Store::append(const std::string& array, std::span<const T> row) {
+void Store::append(const std::string& array, std::span<const T> rows) {
   const auto found = impl_->rows.find(array);
-  if (found == impl_->rows.end() || row.size_bytes() != found->second.row_bytes || found->second.type != memory_type<T>())
-    throw Error(impl_->path, fmt::format("{}: a row of {} values of {} bytes does not fit", array, row.size(), sizeof(T)), "", Exit::fault);
+  if (found == impl_->rows.end() || rows.size_bytes() % std::max<size_t>(1, found->second.row_bytes) != 0 ||
+      found->second.type != memory_type<T>())
+    throw Error(impl_->path, fmt::format("{}: rows of {} values of {} bytes do not fit", array, rows.size(), sizeof(T)), "", Exit::fault);
   auto& r = found->second;
-  const auto bytes = std::as_bytes(row);
+  const auto bytes = std::as_bytes(rows);
   r.pending.insert(r.pending.end(), bytes.begin(), bytes.end());
   impl_->pending_bytes += bytes.size();
   if (r.pending.size() >= r.room)

@@ -118,12 +118,15 @@ Builder::Found Builder::find(const std::string& name, const std::string& where, 
     found.body = regions_[found.region].body;
     return found;
   }
-  // a set whose nodes all follow one body is that body
-  double low = 1e300, high = -1e300;
-  for (int i : found.nodes) low = std::min<double>(low, out_->follower[i]), high = std::max<double>(high, out_->follower[i]);
-  low = -comm_.max(-low), high = comm_.max(high);
+  // a set whose nodes all follow one body is that body; nodes of linear regions that joints hold follow theirs in the mean
   found.linear = !linear_bodies_at(found.nodes).empty();
-  if (low == high && low >= 0 && !found.linear) found.body = static_cast<int>(low);
+  double low = 1e300, high = -1e300;
+  for (const int i : found.nodes) {
+    const int body = found.linear && found.is_region ? -1 : held_to(i);
+    low = std::min<double>(low, body), high = std::max<double>(high, body);
+  }
+  low = -comm_.max(-low), high = comm_.max(high);
+  if (low == high && low >= 0) found.body = static_cast<int>(low);
   return found;
 }
 

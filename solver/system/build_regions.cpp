@@ -22,8 +22,8 @@ const char* const give_material = "give it with [region.NAME] material = \"...\"
 
 }  // namespace
 
-/// Nodes that a step asks for come first: those of nonlinear cells, and of every set (or linear region) that an entry names.  Joints,
-/// springs and most loads ask for no node of a rigid region: they act on its body.  The others follow their bodies where results want them.
+/// Nodes that a step asks for come first: those of nonlinear cells, and of every set (or linear region) that an entry names.  Joints and
+/// springs ask for none: they act on bodies.  Most loads ask for none of a rigid region.  The others follow where results want them.
 std::int64_t Builder::put_active_nodes_first() {
   const Mesh& mesh = mesh_->mesh;
   std::vector<char> active(mesh.X.size(), 0), in_cell(mesh.X.size(), 0), rigid(mesh.X.size(), 0);
@@ -35,9 +35,11 @@ std::int64_t Builder::put_active_nodes_first() {
     }
   for (size_t i = 0; i < active.size(); ++i)
     if (!in_cell[i]) active[i] = 1;
-  std::map<std::string_view, bool> named;  // whether by what asks for nodes of rigid regions too
-  const auto takes_bodies = [](const Entry& e) {
-    return e.section == "joint" || e.section == "spring" || (e.section == "load" && e.kind != "torque" && e.kind != "line");
+  enum class Asked { body, what_deforms, all };
+  std::map<std::string_view, Asked> named;
+  const auto asks = [](const Entry& e) {
+    if (e.section == "joint" || e.section == "spring") return Asked::body;
+    return e.section == "load" && e.kind != "torque" && e.kind != "line" ? Asked::what_deforms : Asked::all;
   };
   std::set<std::string_view> sections;
   for (const KindSchema& kind : scene_schema()) sections.insert(kind.section);
@@ -46,13 +48,13 @@ std::int64_t Builder::put_active_nodes_first() {
     for (const Entry& e : scene_.entries(section))
       for (const auto& [key, value] : e.values)
         for (const std::string& text : value.texts)
-          if (key != "name") named[text] |= !takes_bodies(e);
+          if (key != "name") named[text] = std::max(named[text], asks(e));
   for (const std::string& name : mesh.all_names()) {
     const auto it = named.find(name);
     const int region = mesh.find_region(name);
-    if (it == named.end() || (region >= 0 && mesh_->fidelity[region] != Fidelity::linear)) continue;
+    if (it == named.end() || it->second == Asked::body || (region >= 0 && mesh_->fidelity[region] != Fidelity::linear)) continue;
     for (const std::int64_t i : mesh_->nodes_of(name, ""))
-      if (it->second || !rigid[i]) active[i] = 1;
+      if (it->second == Asked::all || !rigid[i]) active[i] = 1;
     if (const auto facets = mesh.facet_sets.find(name); facets != mesh.facet_sets.end())
       for (const Facet& f : facets->second)
         if (mesh_->fidelity[mesh.region[f.cell]] != Fidelity::rigid)

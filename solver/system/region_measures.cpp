@@ -73,7 +73,7 @@ RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) {
       if (!(std::abs(pose[i] - out.pose[i]) < same_pose)) return true;
     return false;
   };
-  if (out.second_order.size() > 0 && !moved()) return out;
+  if (!moved()) return out;
   out.pose = std::move(pose);
   const RegionSupport support = support_of(system_, r, q);
   const Index S = r.soft.cols(), n = 3 + S, modes = m.n_modes;
@@ -107,6 +107,7 @@ RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) {
 }
 
 void RegionMeasures::archive(Archive& a) {
+  if (a.is_aside) return;
   a("region measures");
   std::vector<std::vector<double>> kept(regions_.size());
   for (size_t k = 0; k < regions_.size(); ++k) {

@@ -82,7 +82,7 @@ def looked_at(name):
             tagged(mesh, own | {region: level}, "levels-tags.h5")
             at[level], why[level] = solved(name, "levels-tags.h5")
         words = [f"{level}: {why[level]}" for level in LEVELS if why[level]]
-        bad = any(w and not (level != "rigid" and w.startswith("exit 2: ") and "is flexible" in w) for level, w in why.items())
+        bad = any(w and not (level != "rigid" and w.startswith("exit 2: ") and f'"{region}" is flexible' in w) for level, w in why.items())
         if all(at[level] is not None for level in LEVELS):
             rigid, linear = (apart(at[level], at["nonlinear"]) for level in LEVELS[:2])
             size = size_of(at["nonlinear"])

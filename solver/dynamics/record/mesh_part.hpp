@@ -51,7 +51,7 @@ class MeshPart {
   std::vector<std::unique_ptr<FieldSource>> sources_;
   std::int64_t topology_entries_ = 0, topology_cells_ = 0;  // of XDMF's list
   std::vector<double> times_;
-  double last_xdmf_ = wall_clock();
+  double next_xdmf_ = wall_clock() + 1;
 };
 
 }  // namespace hilo

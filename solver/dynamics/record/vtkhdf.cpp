@@ -38,23 +38,27 @@ std::int64_t write_vtk_cells(Store& f, std::int64_t n_entries) {
   constexpr std::int64_t slice = 1 << 16;
   std::int64_t end = 0;
   f.append<std::int64_t>(vtk_offsets, {&end, 1});
+  std::vector<std::int64_t> offsets, nodes;
+  std::vector<std::uint8_t> types;
   std::int64_t left = 0;  // nodes of the cell that is being read
   bool is_count = false;  // the next entry, after a polyline
-  for (std::int64_t first = 0; first < n_entries; first += slice)
+  for (std::int64_t first = 0; first < n_entries; first += slice) {
     for (const std::int64_t entry : f.read_rows<std::int64_t>("/xdmf/topology", first, std::min(slice, n_entries - first))) {
       if (is_count) {
         is_count = false;
       } else if (left > 0) {
-        f.append<std::int64_t>(vtk_nodes, {&entry, 1}), --left;
+        nodes.push_back(entry), --left;
       } else {
         const DrawnShape& cell = shapes.at(entry);
-        const auto type = static_cast<std::uint8_t>(cell.vtk_type);
-        f.append<std::uint8_t>(vtk_types, {&type, 1});
+        types.push_back(static_cast<std::uint8_t>(cell.vtk_type));
         left = cell.n_nodes, end += left;
-        f.append<std::int64_t>(vtk_offsets, {&end, 1});
+        offsets.push_back(end);
         is_count = entry == info(Shape::bar2).xdmf_type;
       }
     }
+    f.append<std::uint8_t>(vtk_types, types), f.append<std::int64_t>(vtk_offsets, offsets), f.append<std::int64_t>(vtk_nodes, nodes);
+    types.clear(), offsets.clear(), nodes.clear();
+  }
   return end;
 }
 
@@ -85,16 +89,17 @@ void MeshPart::write_vtkhdf(Store& f) {
     f.name_also(array, "/VTKHDF/" + group + "/" + name);
     write("Steps/" + group + "Offsets/" + name, zeros);
   };
+  std::vector<std::vector<std::string>> arrays;  // of each step
+  for (std::int64_t k = 0; k < n_steps; ++k) arrays.push_back(f.list(fmt::format("/field/{:06}", k)));
   for (const auto& source : sources_)
     for (const Field& field : source->fields()) {
       std::vector<std::string> parts;
       std::vector<std::int64_t> first;
       bool any = false;
       for (std::int64_t k = 0; k < n_steps; ++k) {
-        const std::string array = fmt::format("/field/{:06}/{}", k, field.name);
-        const bool has = f.has(array);
+        const bool has = std::ranges::binary_search(arrays[k], field.name);
         any |= has;
-        parts.push_back(has ? array : "");
+        parts.push_back(has ? fmt::format("/field/{:06}/{}", k, field.name) : "");
         first.push_back(k * (field.of_cells ? n_cells : n));
       }
       if (!any) continue;

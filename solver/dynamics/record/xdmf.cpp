@@ -57,24 +57,24 @@ void MeshPart::write_topology(Store& f) {
   start_array<std::int64_t>(f, "/xdmf/topology");
   start_array<std::int32_t>(f, "/xdmf/region");
   start_array<double>(f, "/xdmf/X");
-  const auto put = [&](std::int64_t value) { f.append<std::int64_t>("/xdmf/topology", {&value, 1}), ++topology_entries_; };
   for (std::int64_t first = 0; first < m.n_cells_global; first += slice) {
     const std::int64_t count = std::min(slice, m.n_cells_global - first);
     const auto shape = mesh.read_rows<std::uint8_t>("/mesh/cells/shape", first, count);
     const auto offset = mesh.read_rows<std::int64_t>("/mesh/cells/offset", first, count + 1);
     const auto nodes = mesh.read_rows<std::int64_t>("/mesh/cells/nodes", offset.front(), offset.back() - offset.front());
+    std::vector<std::int64_t> entries;
     for (std::int64_t c = 0; c < count; ++c) {
-      put(info(shape[c]).xdmf_type);
-      if (shape[c] == static_cast<std::uint8_t>(Shape::bar2)) put(2);
-      for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k) put(nodes[k - offset.front()]);
+      entries.push_back(info(shape[c]).xdmf_type);
+      if (shape[c] == static_cast<std::uint8_t>(Shape::bar2)) entries.push_back(2);
+      entries.insert(entries.end(), nodes.begin() + (offset[c] - offset.front()), nodes.begin() + (offset[c + 1] - offset.front()));
     }
-    for (std::int32_t r : mesh.read_rows<std::int32_t>("/mesh/cells/region", first, count)) f.append<std::int32_t>("/xdmf/region", {&r, 1});
+    f.append<std::int64_t>("/xdmf/topology", entries);
+    f.append<std::int32_t>("/xdmf/region", mesh.read_rows<std::int32_t>("/mesh/cells/region", first, count));
+    topology_entries_ += static_cast<std::int64_t>(entries.size());
   }
   topology_cells_ = m.n_cells_global;
-  for (std::int64_t first = 0; first < m.n_nodes_global; first += slice) {
-    const auto X = mesh.read_rows<double>("/mesh/nodes/X", first, std::min(slice, m.n_nodes_global - first));
-    for (size_t i = 0; i < X.size(); i += 3) f.append<double>("/xdmf/X", {X.data() + i, 3});
-  }
+  for (std::int64_t first = 0; first < m.n_nodes_global; first += slice)
+    f.append<double>("/xdmf/X", mesh.read_rows<double>("/mesh/nodes/X", first, std::min(slice, m.n_nodes_global - first)));
   f.flush();
 }
 
@@ -97,6 +97,7 @@ void MeshPart::write_xdmf(Store& f) {
   };
   for (size_t k = 0; k < times_.size(); ++k) {
     const std::string group = fmt::format("/field/{:06}", k);
+    const std::vector<std::string> arrays = f.list(group);
     t += fmt::format(
         "<Grid Name=\"t{}\"><Time Value=\"{:.9g}\"/>\n<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\"><DataItem Format=\"HDF\" "
         "NumberType=\"Int\" "
@@ -106,7 +107,7 @@ void MeshPart::write_xdmf(Store& f) {
         k, times_[k], cells, entries, base, n, base);
     for (const auto& source : sources_)
       for (const Field& field : source->fields()) {
-        if (field.label.empty() || !f.has(group + "/" + field.name)) continue;
+        if (field.label.empty() || !std::ranges::binary_search(arrays, field.name)) continue;
         const auto row = row_shape(run_array(group + "/" + field.name));
         const std::int64_t count = field.of_cells ? cells : n;
         attribute(field.label, row.empty() ? "Scalar" : "Vector", field.of_cells ? "Cell" : "Node",

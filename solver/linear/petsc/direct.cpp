@@ -56,7 +56,7 @@ SolveReport DirectSolver::solve(std::span<const double> b, std::span<double> x, 
   return report;
 }
 
-std::optional<int> DirectSolver::eigenvalues_below_zero(int first_row) const {
+std::optional<int> DirectSolver::eigenvalues_below_zero(int first_row) {
   matrix_->assemble();
   return petsc::eigenvalues_below_zero(matrix_->mat(), *shared_, first_row);
 }

@@ -16,7 +16,7 @@ class DirectSolver final : public KktSolver {
   void add_diagonal(int block, const double d[3]) override { matrix_->add_diagonal(block, d); }
   void sum_shared(std::span<double> local) override { shared_->sum(local); }
   SolveReport solve(std::span<const double> b, std::span<double> x, double) override;
-  std::optional<int> eigenvalues_below_zero(int first_row) const override;
+  std::optional<int> eigenvalues_below_zero(int first_row) override;
   bool repeats_cheaply() const override { return is_mostly_dense_; }
   double bytes() const override { return matrix_->bytes() + factor_bytes_; }
   double set_up_seconds() const override { return set_up_; }

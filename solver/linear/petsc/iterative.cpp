@@ -101,7 +101,7 @@ class IterativeSolver final : public KktSolver {
     return report;
   }
 
-  std::optional<int> eigenvalues_below_zero(int first_row) const override {
+  std::optional<int> eigenvalues_below_zero(int first_row) override {
     return direct_ ? direct_->eigenvalues_below_zero(first_row) : std::nullopt;
   }
   double bytes() const override {

@@ -233,6 +233,25 @@ TEST(LinearRegion, SetsThatOverlapAreOne) {
   EXPECT_NEAR(sag[1], sag[0], 0.01 * std::abs(sag[0]));
 }
 
+// What a joint holds is a rigid patch at every level, also to what looks at a point of it, here above the hinge that a bar begins to fall
+// from.
+TEST(LinearRegion, ASetThatAJointHoldsHasAxesAtAPoint) {
+  const std::string above = "on = \"xmin\"\nat = [0, 0.05, 0.15]\n";
+  SceneCase c("gravity = [0, 0, -1e-4]\n" + soft + "modes = 200\nup_to = 1e9\n" +
+              axial("revolute", "hinge", "ground", "xmin", {0, 0.05, 0.05}, {0, 1, 0}) + "[[sensor]]\nname = \"seat\"\n" + above +
+              "[[probe]]\nname = \"seat\"\n" + above + in_time(0.2, 1e-3) + solved_to(1e-13));
+  Eigen::MatrixXd felt[2], seat[2];
+  for (const Fidelity f : {Fidelity::nonlinear, Fidelity::linear}) {
+    c.use(bar(0, 1, 5), {f});
+    const Results r = c.solved();
+    felt[f == Fidelity::linear] = r.history("sensor/seat"), seat[f == Fidelity::linear] = r.history("probe/seat");
+  }
+  const double along = felt[0].col(0).maxCoeff() - felt[0].col(0).minCoeff(), way = std::abs(seat[0](seat[0].rows() - 1, 0));
+  EXPECT_LT((felt[1] - felt[0]).cwiseAbs().maxCoeff(), 1e-3 * along);
+  EXPECT_LT((seat[1] - seat[0]).leftCols<3>().cwiseAbs().maxCoeff(), 1e-3 * way);
+  EXPECT_GT(way, 1e-7);
+}
+
 // With as many modes as its cells have freedoms a linear region is the whole finite-element model, for small motions: u across is the same
 // to round-off of the cells' positions; along, the cells know the shortening u^2/L of what bends.
 TEST(LinearRegion, WithAllModesVibratesAsTheCellsDo) {
