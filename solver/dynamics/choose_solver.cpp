@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "system/mostly_shells.hpp"
 
@@ -13,6 +14,11 @@ namespace {
 std::unique_ptr<KktSolver> light(const std::string& kind, const Entry&) { return make_light_solver(kind); }
 std::unique_ptr<KktSolver> petsc(const std::string& kind, const Entry& e) {
   return make_petsc_solver(kind, e.number("linear_tolerance"), static_cast<int>(e.number("subdomains")));
+}
+
+bool inverts(const Scene& scene) {
+  const std::string& analysis = scene.table("time").text("analysis");
+  return analysis == "modes" || analysis == "buckling";
 }
 
 }  // namespace
@@ -31,7 +37,8 @@ Registry<SolverKind>& solver_kinds() {
   return kinds;
 }
 
-std::int64_t most_factored(const System& system) {
+std::int64_t most_factored(const Scene& scene, const System& system) {
+  if (inverts(scene)) return std::numeric_limits<std::int64_t>::max();
   // factors of a surface stay thin; incomplete factors and multigrid hardly see that it bends
   constexpr std::int64_t of_cells = 300000, of_surfaces_and_bodies = 3000000;
   const BlockMap& map = system.layout.map;
@@ -54,7 +61,7 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   } else if (kind == "auto") {
     kind = system.comm->size > 1 ? "direct" : "light";
     constexpr std::int64_t most_beside = 1000;  // blocks of unknowns of folds, which iterative solvers eliminate densely
-    if (unknowns > most_factored(system) && system.layout.map.n_with_cells < most_beside) kind = "cg";
+    if (unknowns > most_factored(scene, system) && system.layout.map.n_with_cells < most_beside) kind = "cg";
     const std::int64_t ranks = system.comm->size, flexible = 3 * system.layout.map.first_dense;
     const auto held = system.comm->sum(std::count_if(system.node_block.begin(), system.node_block.end(), [](int k) { return k >= 0; }));
     const bool is_far = ranks >= 2 && system.traits().reaches;
@@ -70,6 +77,9 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   if (system.comm->size > 1 && system.traits().reaches && kind != "direct")
     throw Error(e.where("kind"), fmt::format("surfaces that meet or are tied run on several ranks with \"direct\" alone, not \"{}\"", kind),
                 "leave solver.kind out, or run without mpirun");
+  if (inverts(scene) && kind == "cg")
+    throw Error(e.where("kind"), "modes and buckling need solves to round-off, and \"cg\" stops at four digits",
+                "leave solver.kind out, or use iterative where no factor finds room");
   auto solver = chosen.make(kind, e);
   solver->structure(system.layout.cliques, system.layout.map);
   if (talk) fmt::print(stderr, "solver {}: {}\n", solver->name(), why);

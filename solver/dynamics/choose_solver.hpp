@@ -14,8 +14,9 @@ namespace hilo {
 /// holds; on several ranks that share few nodes BDDC, in a third of the time of MUMPS and two thirds of its memory (docs/solvers.md).
 std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& system, bool talk);
 
-/// Up to how many unknowns `auto` takes factors: more where most are of bodies and joints, or of shells, whose factors stay thin.
-std::int64_t most_factored(const System& system);
+/// Up to how many unknowns `auto` takes factors: more where most are of bodies and joints, or of shells, whose factors stay thin; without
+/// end for modes and buckling, which solve a hundred times with one matrix, and to round-off.
+std::int64_t most_factored(const Scene& scene, const System& system);
 
 /// A word of solver.kind that is a solver; `auto` chooses among them.
 struct SolverKind {

@@ -83,7 +83,7 @@ bool Companion::step(double to, int cuts, ErrorEstimate& estimate) {
 }
 
 bool Companion::try_step(double to) {
-  StepTools tools{system_, *solver_, newton_};
+  StepTools tools{system_, *solver_, newton_, make_solver_};
   for (const Predictor p : {Predictor::rigid_rotation, Predictor::velocity, Predictor::hold}) {
     tools.newton.reach = p == Predictor::rigid_rotation ? 1 : newton_.reach;
     tools.newton.least_share = p == Predictor::hold ? newton_.least_share : 0.1;

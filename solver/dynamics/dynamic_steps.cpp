@@ -86,9 +86,8 @@ class DynamicSteps final : public Steps {
                                           method == Newmark::name ? " where gamma is not 1/2" : ""));
     }
     if (searches) return estimate.give_up("the structure of the scene changes from step to step");
-    companion_.emplace(
-        run_.system, integrator_kinds().at(run_.plan.now().method, time_.where("integrator")).make(time_),
-        [this] { return choose_solver(run_.scene, run_.system, false); }, run_.newton);
+    companion_.emplace(run_.system, integrator_kinds().at(run_.plan.now().method, time_.where("integrator")).make(time_), make_solver_,
+                       run_.newton);
   }
 
   /// Positions and velocities to start from; false where there are none.
@@ -239,7 +238,7 @@ class DynamicSteps final : public Steps {
   /// One step of length h from the state, trying first guesses in turn, the last one with patience; the state is left alone.
   bool try_step(double h) {
     search(h);
-    StepTools tools{run_.system, *run_.solver, run_.newton};
+    StepTools tools{run_.system, *run_.solver, run_.newton, make_solver_};
     const State& state = run_.state;
     const std::vector<Predictor> order = guesses();
     for (const Predictor p : order) {
@@ -289,8 +288,9 @@ class DynamicSteps final : public Steps {
   }
 
   const Entry& time_;
-  double end_, step_;                      // of the run, of a step at most [s]
-  std::optional<StepControl> control_;     // where the tolerance chooses the steps
+  double end_, step_;                   // of the run, of a step at most [s]
+  std::optional<StepControl> control_;  // where the tolerance chooses the steps
+  std::function<std::unique_ptr<KktSolver>()> make_solver_ = [this] { return choose_solver(run_.scene, run_.system, false); };
   std::optional<Companion> companion_;     // where the error is estimated by a second solution,
   std::optional<StepErrors> step_errors_;  // and where by its steps alone
   struct Place {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Time integrators of the rigid-flexible system.  Each turns the unknown end of a step into stages of the system's residual.
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -41,6 +42,7 @@ struct StepTools {
   const System& system;
   KktSolver& solver;
   NewtonOptions newton;
+  std::function<std::unique_ptr<KktSolver>()> another_solver = {};  // like it, for matrices beside those of the step
 };
 
 /// A stage of an accepted step with its multipliers: for work, and the last one for reactions.

@@ -10,9 +10,7 @@ void complete(const System& system, KktSolver& solver, std::vector<double>& r) {
   system.mask_fixed(r);
 }
 
-void assemble(const System& system, KktSolver& solver, const Stage& stage, std::span<const double> lambda, Residual& r, bool tangent) {
-  const Timed timed(phases().assembly);
-  system.evaluate(stage, lambda, r, tangent ? &solver : nullptr);
+void complete(const System& system, KktSolver& solver, Residual& r) {
   complete(system, solver, r.r);
   r.force_scale = system.comm->max(r.force_scale);
   if (system.comm->size > 1) {
@@ -20,6 +18,12 @@ void assemble(const System& system, KktSolver& solver, const Stage& stage, std::
     r.least_det.det = -system.comm->max(-own);
     r.least_det.region = static_cast<int>(system.comm->max(own == r.least_det.det ? r.least_det.region : -1));
   }
+}
+
+void assemble(const System& system, KktSolver& solver, const Stage& stage, std::span<const double> lambda, Residual& r, bool tangent) {
+  const Timed timed(phases().assembly);
+  system.evaluate(stage, lambda, r, tangent ? &solver : nullptr);
+  complete(system, solver, r);
   ++phases().evaluations, phases().tangents += tangent;
 }
 

@@ -9,6 +9,8 @@ namespace hilo {
 
 /// What this rank has of a residual becomes all of it, without what acts on what moves by a law.  Collective.
 void complete(const System& system, KktSolver& solver, std::vector<double>& r);
+/// The same, with its largest force and least determinant.
+void complete(const System& system, KktSolver& solver, Residual& r);
 /// The complete residual of a stage; with `tangent` the solver gets its derivative.  Collective.
 void assemble(const System& system, KktSolver& solver, const Stage& stage, std::span<const double> lambda, Residual& r, bool tangent);
 /// K z = -r with the tangent assembled last, within `tolerance` (KktSolver::solve).  Collective.

@@ -81,67 +81,75 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
   return system.largest_difference(q, placed);
 }
 
-double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {
-  Config zero = v, jump = v;
+namespace {
+
+constexpr double exact = 1e-9;  // of a linear solve; one that leaves more, as CG does in single precision, is asked again for what is left
+constexpr int most_solves = 5;
+
+/// Velocities go to the nearest ones, in the mass norm, that the rows allow: nearest to v - moved.  Returns the largest change; 0, without
+/// a solve, where nothing moves unless `even_at_rest`.
+double to_allowed(const System& system, KktSolver& solver, const Config& q, Config& v, Config moved, double t, bool even_at_rest) {
+  Config zero;
   combine(zero, {{0, &v}});
-  system.prescribe_rates(t, Side::right, &v, nullptr);
-  std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), b(3 * system.n_blocks(), 0.0), z(b.size(), 0.0);
-  Residual r;
-  if (system.moves()) {  // a jump of what moves by a law is felt by what shares mass with it: M dv = -M jump
-    combine(jump, {{1, &v}, {-1, &jump}});
-    Residual without;
-    Stage inertia = mass_stage(system.start, jump, t);  // without strain
-    inertia.left = inertia.end = &q;
-    inertia.rates_alone = true, inertia.load_factor = 0;
-    system.evaluate(inertia, lambda, r, nullptr);
-    inertia.a = &zero;
-    system.evaluate(inertia, lambda, without, nullptr);  // the round-off of stiff cells
-    for (size_t i = 0; i < r.r.size(); ++i) r.r[i] -= without.r[i];
-    complete(system, solver, r.r);
-    for (int i = 0; i < 3 * system.first_joint_block(); ++i) b[i] = -r.r[i];
-  }
-  std::vector<double> rate;
-  system.row_rates(q, v, nullptr, t, rate, nullptr);
-  const auto is_zero = [](double x) { return x == 0; };
-  if (system.comm->max(std::all_of(rate.begin(), rate.end(), is_zero) && std::all_of(b.begin(), b.end(), is_zero) ? 0 : 1) == 0) return 0;
-  system.evaluate(mass_stage(q, zero, 0), lambda, r, &solver);
+  std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), none = lambda, b, z(3 * system.n_blocks(), 0.0), rate;
   const int first = 3 * system.first_joint_block();
-  const std::vector<char> on = system.rows_on();
-  for (size_t k = 0; k < on.size(); ++k)
-    if (on[k]) b[first + k] = -r.sigma * rate[k];
-  const SolveReport solved = solver.solve(b, z);
-  if (!solved.ok)
-    throw Error("",
-                fmt::format("the joints and masses do not determine the motion: {}{}", solved.message, free_part(system, solver, r.sigma)),
-                "a part may have no mass or inertia");
-  return system.comm->max(system.add_rates(v, q, z));
+  double sigma = 0, change = 0, left = 1;
+  for (int pass = 0; pass < most_solves && left > exact; ++pass) {
+    b.assign(z.size(), 0.0);
+    if (pass > 0 || even_at_rest || system.moves()) {  // M moved + G^T lambda
+      Residual r, without;
+      Stage inertia = mass_stage(system.start, moved, t);  // without strain
+      inertia.left = inertia.end = &q;
+      inertia.rates_alone = pass == 0, inertia.load_factor = 0;
+      system.evaluate(inertia, lambda, r, nullptr);
+      inertia.a = &zero;
+      without.r.assign(r.r.size(), 0.0);
+      if (pass > 0 || system.traits().deforms) system.evaluate(inertia, none, without, nullptr);  // also the round-off of stiff cells
+      for (int k = 0; k < first; ++k) b[k] = without.r[k] - r.r[k];
+      complete(system, solver, b);
+    }
+    system.row_rates(q, v, nullptr, t, rate, nullptr);
+    const auto is_zero = [](double x) { return x == 0; };
+    if (pass == 0 && !even_at_rest &&
+        system.comm->max(std::all_of(rate.begin(), rate.end(), is_zero) && std::all_of(b.begin(), b.end(), is_zero) ? 0 : 1) == 0)
+      return 0;
+    if (pass == 0) {
+      Residual r;
+      system.evaluate(mass_stage(q, zero, 0), none, r, &solver);
+      sigma = r.sigma;
+    }
+    const std::vector<char> on = system.rows_on();
+    for (size_t k = 0; k < on.size(); ++k) b[first + k] = on[k] ? -sigma * rate[k] : 0;
+    const SolveReport solved = solver.solve(b, z);
+    if (!solved.ok)
+      throw Error("",
+                  fmt::format("the joints and masses do not determine the motion: {}{}", solved.message, free_part(system, solver, sigma)),
+                  "a part may have no mass or inertia");
+    const double by = system.comm->max(system.add_rates(v, q, z));
+    if (pass == 0) change = by;
+    system.add_rates(moved, q, z);
+    for (size_t k = 0; k < lambda.size(); ++k) lambda[k] += sigma * z[first + k];
+    left *= solved.residual;
+  }
+  return change;
+}
+
+}  // namespace
+
+double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {
+  Config moved = v;  // what moves by a law is felt by what shares mass with it
+  system.prescribe_rates(t, Side::right, &v, nullptr);
+  combine(moved, {{1, &v}, {-1, &moved}});
+  return to_allowed(system, solver, q, v, std::move(moved), t, false);
 }
 
 void nearest_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {
-  Config none;
-  combine(none, {{0, &v}});
-  system.prescribe_rates(t, Side::left, &none, nullptr);
-  std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), b, z(3 * system.n_blocks(), 0.0), rate;
-  Residual r;
-  Config free;
-  combine(free, {{1, &v}, {-1, &none}});
-  Stage inertia = mass_stage(system.start, free, t);  // without strain
-  inertia.left = inertia.end = &q;
-  inertia.rates_alone = true, inertia.load_factor = 0;
-  system.evaluate(inertia, lambda, r, nullptr);  // P^T M v of what is free
-  b = r.r;
-  system.mask_fixed(b);
-  Config still;
-  combine(still, {{0, &v}});
-  system.evaluate(mass_stage(q, still, t), lambda, r, &solver);
-  system.row_rates(q, none, nullptr, t, rate, nullptr);
-  const int first = 3 * system.first_joint_block();
-  const std::vector<char> on = system.rows_on();
-  for (size_t k = 0; k < on.size(); ++k) b[first + k] = on[k] ? -r.sigma * rate[k] : 0;
-  const SolveReport solved = solver.solve(b, z);
-  if (!solved.ok) throw Error("", "the joints and masses do not determine the velocities: " + solved.message);
-  v = none;
-  system.add_rates(v, q, z);
+  Config given, moved;
+  combine(given, {{0, &v}});
+  system.prescribe_rates(t, Side::left, &given, nullptr);
+  combine(moved, {{1, &given}, {-1, &v}});
+  v = given;
+  to_allowed(system, solver, q, v, std::move(moved), t, true);
 }
 
 namespace {
@@ -204,8 +212,9 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
   Residual r;
   std::vector<double> rate, acceleration, z;
   const int first = 3 * system.first_joint_block();
-  for (int it = 0; it < (pressed ? 12 : 1); ++it) {
-    assemble(system, solver, stage, lambda, r, pressed || !has_mass);
+  double left = 1;
+  for (int it = 0; it < (pressed ? 12 : most_solves) && left > exact; ++it) {
+    assemble(system, solver, stage, lambda, r, pressed || (it == 0 && !has_mass));
     system.row_rates(s.q, s.v, &a, s.t, rate, &acceleration);  // rows: d2g/dt2 = 0
     const std::vector<char> on = system.rows_on();
     for (size_t i = 0; i < on.size(); ++i) r.r[first + i] = on[i] ? r.sigma * acceleration[i] : 0;
@@ -219,7 +228,8 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
       lambda[i] += r.sigma * z[first + i];
       change = std::max(change, std::abs(r.sigma * z[first + i])), size = std::max(size, std::abs(lambda[i]));
     }
-    if (change <= 1e-12 * size) break;
+    if (pressed ? change <= 1e-12 * size : !solved.ok) break;
+    if (!pressed) left *= solved.residual;
   }
 }
 

@@ -76,7 +76,7 @@ Wanted wanted(const Scene& scene, const System& system) {
   const std::string& solver = scene.table("solver").text("kind");
   const std::int64_t unknowns = 3 * system.layout.map.n_global;
   const bool factored = solver == "light" || solver == "klu" || solver == "cholesky" || solver == "umfpack" ||
-                        (solver == "auto" && unknowns <= most_factored(system));
+                        (solver == "auto" && unknowns <= most_factored(scene, system));
   if (system.comm->size == 1 && factored) w.memory = resident() + solver_bytes(system);
   w.per_step = 8 * 12;
   for (const Observer* part : system.all<Observer>())

@@ -69,6 +69,12 @@ ArcStrain arc_strain(const arc::Measures<double>& e) {
   return x;
 }
 
+ArcStrain arc_rate(const arc::Measures<double>& e, const arc::Measures<double>& de) {
+  ArcStrain x;
+  arc::strain_rates<double>(e, de, x.data(), nullptr, nullptr);
+  return x;
+}
+
 arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const std::array<Mat6, 4>& C) {
   const ArcStrain at_length_one = arc_strain(e);
   const double L = at_length_one.head<3>().norm();

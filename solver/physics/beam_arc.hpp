@@ -19,6 +19,8 @@ namespace hilo {
 /// L times the strains [m, 1].
 using ArcStrain = Eigen::Matrix<double, 6, 1>;
 ArcStrain arc_strain(const arc::Measures<double>& e);
+/// Their rates where the measures change at the rates de.
+ArcStrain arc_rate(const arc::Measures<double>& e, const arc::Measures<double>& de);
 /// Places along an element, 0 at section A and 1 at B, and weights that sum to 1: Gauss, 4 points.
 struct AlongArc {
   double t, weight;

@@ -219,10 +219,15 @@ inline void run(const ArcCall& call) {
   const auto pose_of = [](const double* p) { return reinterpret_cast<const BodyPose<T>*>(p); };
   const ArcCell<T>& cell = *reinterpret_cast<const ArcCell<T>*>(call.cells);
   T *f = reinterpret_cast<T*>(call.f), *K = reinterpret_cast<T*>(call.K);
-  SectionPoints<T> left, end;
-  points_of(cell, pose_of(call.left), left);
+  const auto points_at = [&](const double* q) {
+    SectionPoints<T> at;
+    points_of(cell, pose_of(q), at);
+    return at;
+  };
+  const SectionPoints<T> left = points_at(call.left);
+  SectionPoints<T> end;
   if (K) {
-    points_of(cell, pose_of(call.end), end);
+    end = points_at(call.end);
     for (int i = 0; i < 144; ++i) K[i] = T{};
   }
   Gradient<T> g;
@@ -232,12 +237,16 @@ inline void run(const ArcCall& call) {
   T x_ahead[n_strains];
   const bool foresees = K && call.before;
   if (foresees) {
-    SectionPoints<T> before, along;
-    points_of(cell, pose_of(call.before), before), points_of(cell, pose_of(call.along), along);
+    const SectionPoints<T> before = points_at(call.before), along = points_at(call.along);
     strain_ahead(measures_of(before.y), rates_of(before.y, along.y), x_ahead);
   }
 
   T s_all[n_measures]{}, s_change[n_measures]{};  // and what the foreseen resultants change of it in the tangent
+  const auto add_slopes = [&](const T(*D)[n_measures], double slope, const SectionPoints<T>& at) {
+    Gradient<T> right;
+    gradient(at, end, right);
+    add_stiffness(D, slope, g, right, K);
+  };
   for (int n = 0; n < call.n_pairs; ++n) {
     const ArcCall::Pair& pair = call.pairs[n];
     T s_pair[n_measures], D_pair[n_measures][n_measures];
@@ -248,15 +257,21 @@ inline void run(const ArcCall& call) {
     const bool at_end = K && pair.q1 == call.end;
     if (!at_end) points_of(cell, pose_of(pair.q1), at1);
     const SectionPoints<T>& p1 = at_end ? end : at1;
+    if (pair.is_instant) {
+      const SectionPoints<T> p0 = points_at(pair.q0);
+      const Measures<T> m0 = measures_of(p0.y), m1 = measures_of(p1.y);
+      T D_rate[n_measures][n_measures];
+      respond_to_rates(cell.law, measures_of(left.y), {m1.a - m0.a, m1.t - m0.t, m1.p - m0.p}, T(pair.by_beta * cell.beta), s_pair,
+                       K ? D_pair : nullptr, D_rate);
+      for (int m = 0; m < n_measures; ++m) s_all[m] += s_pair[m];
+      if (K) add_slopes(D_pair, call.slope, left), add_slopes(D_rate, slope, p1), add_slopes(D_rate, -pair.slope0, p0);
+      continue;
+    }
     if (pair.s) {
       s = lanes_of(pair.s), D = reinterpret_cast<const T(*)[n_measures]>(pair.D);
     } else {
       Measures<T> m1 = measures_of(p1.y), m0 = m1;
-      if (pair.q0 != pair.q1) {
-        SectionPoints<T> at0;
-        points_of(cell, pose_of(pair.q0), at0);
-        m0 = measures_of(at0.y);
-      }
+      if (pair.q0 != pair.q1) m0 = measures_of(points_at(pair.q0).y);
       if (pair.mean) {
         const double w = pair.weight;
         const double by0 = pair.end_slopes ? 2 * (1 - w) : 1 - w, by1 = pair.end_slopes ? 2 * w - 1 : w;  // m1 stays: 2 mean - m1
@@ -269,11 +284,7 @@ inline void run(const ArcCall& call) {
       const bool recalls = pair.past[0] != nullptr;
       if (recalls) {
         T x[3][n_strains];
-        for (int k = 0; k < 3; ++k) {
-          SectionPoints<T> then;
-          points_of(cell, pose_of(k == 0 ? pair.q0 : pair.past[k - 1]), then);
-          strain(measures_of(then.y), x[k]);
-        }
+        for (int k = 0; k < 3; ++k) strain(measures_of(points_at(k == 0 ? pair.q0 : pair.past[k - 1]).y), x[k]);
         for (int i = 0; i < n_strains; ++i) recalled[i] = pair.recall[0] * (x[0][i] - x[1][i]) + pair.recall[1] * (x[1][i] - x[2][i]);
       }
       const T rate = pair.by_beta * cell.beta + pair.kappa;
@@ -289,11 +300,7 @@ inline void run(const ArcCall& call) {
     }
     if (pair.acts)
       for (int m = 0; m < n_measures; ++m) s_all[m] += s[m];
-    if (K && slope != 0) {
-      Gradient<T> right;
-      gradient(p1, end, right);
-      add_stiffness(D, slope, g, right, K);
-    }
+    if (K && slope != 0) add_slopes(D, slope, p1);
   }
 
   LaneVector<T> F[8]{}, inertia[8]{};

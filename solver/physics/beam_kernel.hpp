@@ -14,6 +14,8 @@ struct ArcCall {
     double by_beta = 0;                         // of beta, beside kappa [1/s]
     double slope = 1;                           // d q1 / d end
     bool acts = true;                           // false: in the tangent alone
+    bool is_instant = false;                    // rates at `left`, as fast as q0 and q1 are apart, and no change from one to the other
+    double slope0 = 0;                          // d q0 / d end, of these
     bool mean = false;                          // the forces at the mean of the measures, by the share `weight` of q1
     double weight = 0.5;
     bool end_slopes = false;                     // from the right, slopes of the strains at q1 and not at the mean

@@ -190,21 +190,56 @@ template <class T>
   for (int i = 0; i < 3; ++i) by_p.m[i][i] += 1;
 }
 
-/// L times the strains at m and what dm changes of them to first order.  Statics alone need it, and steps in time are faster without it
-/// beside them.
+/// L times the rates of the strains at m, x = J dm, where the measures change at the rates dm; with J, and E = dx/dm, where they are
+/// wanted.
 template <class T>
-[[gnu::noinline]] void strain_ahead(const Measures<T>& m, const Measures<T>& dm, T* x) {
+[[gnu::noinline]] void strain_rates(const Measures<T>& m, const Measures<T>& dm, T* x, T (*J)[n_measures], T (*E)[n_measures]) {
   const End<T> e(m);
   const TurnFunctions<T> turn = turning(e.c, e.c);
-  e.strain(turn.f1, turn.k1, x);
   Matrix<T> by_a, by_p;
   strain_slopes(turn.f1, turn.k1, e.a, e.p, e.w, by_a, by_p);
-  const T dc = 0.5 * dm.t;
+  const T dc = 0.5 * dm.t, half_f = 0.5 * turn.f1, half_f_c = 0.5 * turn.f1_c;
+  LaneVector<T> by_c;
   for (int i = 0; i < 3; ++i) {
+    by_c[i] = turn.k1_c * e.b[i] - half_f_c * e.w[i];
+    x[i] = dc * by_c[i], x[3 + i] = turn.f1 * dm.a[i] + dc * (turn.f1_c * e.a[i]);
     for (int j = 0; j < 3; ++j) x[i] += by_a.m[i][j] * dm.a[j] + by_p.m[i][j] * dm.p[j];
-    x[i] += dc * (turn.k1_c * e.b[i] - 0.5 * (turn.f1_c * e.w[i]));
-    x[3 + i] += turn.f1 * dm.a[i] + dc * (turn.f1_c * e.a[i]);
   }
+  if (!J) return;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      J[i][j] = by_a.m[i][j], J[i][4 + j] = by_p.m[i][j];
+      J[3 + i][j] = i == j ? turn.f1 : T{}, J[3 + i][4 + j] = T{};
+    }
+    J[i][3] = 0.5 * by_c[i], J[3 + i][3] = half_f_c * e.a[i];
+  }
+  const LaneVector<T> dw = cross(dm.a, e.p) + cross(e.a, dm.p), db = cross(dm.a, e.w) + cross(e.a, dw);
+  const T f_cc = 2. * turn.df_c, k_cc = 2. * turn.dk_c;  // of a divided difference, the slope by one of two equal places is half of it
+  for (int i = 0; i < 3; ++i) {
+    E[i][3] = 0.5 * (turn.k1_c * db[i] - half_f_c * dw[i] + dc * (k_cc * e.b[i] - 0.5 * (f_cc * e.w[i])));
+    E[3 + i][3] = 0.5 * (turn.f1_c * dm.a[i] + dc * (f_cc * e.a[i]));
+  }
+  for (int j = 0; j < 3; ++j) {
+    LaneVector<T> one{};
+    one[j] = constant<T>(1);
+    const LaneVector<T> wa = cross(one, e.p), wp = cross(e.a, one), dwa = cross(one, dm.p), dwp = cross(dm.a, one);
+    const LaneVector<T> ba = cross(one, e.w) + cross(e.a, wa), bp = cross(e.a, wp);
+    const LaneVector<T> dba = cross(dm.a, wa) + cross(one, dw) + cross(e.a, dwa), dbp = cross(dm.a, wp) + cross(e.a, dwp);
+    for (int i = 0; i < 3; ++i) {
+      E[i][j] = turn.k1 * dba[i] - half_f * dwa[i] + dc * (turn.k1_c * ba[i] - half_f_c * wa[i]);
+      E[i][4 + j] = turn.k1 * dbp[i] - half_f * dwp[i] + dc * (turn.k1_c * bp[i] - half_f_c * wp[i]);
+      E[3 + i][j] = i == j ? dc * turn.f1_c : T{}, E[3 + i][4 + j] = T{};
+    }
+  }
+}
+
+/// L times the strains at m and what dm changes of them to first order.
+template <class T>
+[[gnu::noinline]] void strain_ahead(const Measures<T>& m, const Measures<T>& dm, T* x) {
+  T more[n_strains];
+  strain(m, x);
+  strain_rates<T>(m, dm, more, nullptr, nullptr);
+  for (int i = 0; i < n_strains; ++i) x[i] += more[i];
 }
 
 /// What an element has over a step: L times the strains at both ends, and the forces and moments.
@@ -293,6 +328,35 @@ template <class T>
       D[4 + i][j] += Bp.m[0][i] * n0 + Bp.m[1][i] * n1 + Bp.m[2][i] * n2;
     }
     D[3][j] += Bt[0] * n0 + Bt[1] * n1 + Bt[2] * n2 + df_half * (a[0] * CJ[3][j] + a[1] * CJ[4][j] + a[2] * CJ[5][j]);
+  }
+}
+
+/// The forces of C* rate times the rates of the strains, at m where the measures change at the rates dm; with the slopes by m, and those by
+/// dm, where they are wanted.
+template <class T>
+[[gnu::noinline]] void respond_to_rates(const ArcStiffness<T>& law, const Measures<T>& m, const Measures<T>& dm, const T& rate, T* s,
+                                        T (*by_m)[n_measures], T (*by_dm)[n_measures]) {
+  T x[n_strains], back[n_strains], J[n_strains][n_measures], E[n_strains][n_measures];
+  strain_rates(m, dm, x, by_m ? J : nullptr, by_m ? E : nullptr);
+  for (int i = 0; i < n_strains; ++i) back[i] = -x[i];
+  Resultants<T> r;
+  respond(law, m, m, 0, rate, back, static_cast<const T*>(nullptr), r, s, by_m ? by_dm : nullptr);
+  if (!by_m) return;
+  // D is half of what the slopes of J do at these resultants and rate J^T C* J; with -rate and -x it has the latter's opposite
+  T same[n_measures];
+  respond(law, m, m, 0, T(-rate), x, static_cast<const T*>(nullptr), r, same, by_m);
+  const T rate_L = rate / law.length;
+  for (int j = 0; j < n_measures; ++j) {
+    T n[n_strains];
+    for (int i = 0; i < n_strains; ++i) {
+      n[i] = law.C[i][0] * E[0][j];
+      for (int k = 1; k < n_strains; ++k) n[i] += law.C[i][k] * E[k][j];
+    }
+    for (int i = 0; i < n_measures; ++i) {
+      const T both = by_dm[i][j] + by_m[i][j];
+      by_dm[i][j] = 0.5 * (by_dm[i][j] - by_m[i][j]), by_m[i][j] = both;
+      for (int k = 0; k < n_strains; ++k) by_m[i][j] += rate_L * (J[k][i] * n[k]);
+    }
   }
 }
 

@@ -61,6 +61,14 @@ ArcStrain recalled(const BeamCell& cell, const Dissipation& d, const Config& fro
   return last * (strain_of(cell, from) - one) + before * (one - strain_of(cell, *d.two));
 }
 
+/// What C* times the change of strain from w0 to w1 takes [J]; at an instant the change is that of its rates.
+double taken_by_rates(const BeamCell& cell, const Stage& s) {
+  if (s.conserving()) return arc_taken(cell.arc.law, strain_of(cell, *s.w0), strain_of(cell, *s.w1), ArcStrain::Zero());
+  const arc::Measures<double> m0 = measures_of(cell, *s.w0), m1 = measures_of(cell, *s.w1);
+  const ArcStrain rate = arc_rate(measures_of(cell, *s.left), {m1.a - m0.a, m1.t - m0.t, m1.p - m0.p});
+  return arc_taken(cell.arc.law, ArcStrain::Zero(), rate, ArcStrain::Zero());
+}
+
 /// Poses of the bodies of W cells, a slot for each configuration that a stage names.
 class Poses {
  public:
@@ -120,8 +128,9 @@ std::vector<StagePair> pairs_of(const Stage& s, bool has_beta) {
     if (d) out.push_back({s.e0, s.e1, loss});
   }
   if (!rates_are_in) {
-    out.push_back({s.w0, s.w1, {.by_beta = 1 / s.h, .slope = s.slope1()}});
-    if (s.slope0() != 0) out.push_back({s.w1, s.w0, {.by_beta = -1 / s.h, .slope = s.slope0(), .acts = false}});
+    const bool is_instant = !s.conserving();
+    out.push_back({s.w0, s.w1, {.by_beta = 1 / s.h, .slope = s.slope1(), .is_instant = is_instant, .slope0 = s.slope0()}});
+    if (s.slope0() != 0 && !is_instant) out.push_back({s.w1, s.w0, {.by_beta = -1 / s.h, .slope = s.slope0(), .acts = false}});
   }
   return out;
 }
@@ -293,9 +302,7 @@ void Beams::add_work(const Moment& m, Work& sum) const {
     sum.add(s, [&](const Config& from, const Config& to, double last, double before) {
       return arc_taken(cell.arc.law, strain_of(cell, from), strain_of(cell, to), recalled(cell, *s.dissipation, from, last, before));
     });
-    if (rates && cell.arc.beta > 0)
-      sum.dissipated +=
-          s.share() * cell.arc.beta / s.h * arc_taken(cell.arc.law, strain_of(cell, *s.w0), strain_of(cell, *s.w1), ArcStrain::Zero());
+    if (rates && cell.arc.beta > 0) sum.dissipated += s.share() * cell.arc.beta / s.h * taken_by_rates(cell, s);
     if (drags && cell.arc.alpha > 0)
       sum.dissipated += cell.arc.alpha * work(momenta_of(cell, points_of(cell, *s.v)), points_of(cell, s.from()), points_of(cell, *s.end));
   }

@@ -16,7 +16,6 @@ CoupledStages::CoupledStages(std::unique_ptr<SerialKktSolver> solver, Eigen::Mat
 }
 
 void CoupledStages::begin(const System& system, double t, double h) {
-  if (system.comm->size > 1) throw Error("", name() + " is serial", "run it without mpirun, or choose another time.integrator");
   if (system.traits().lumps_masses) throw Error("", name() + " has no point masses on flexible parts", "use [[body]] entries");
   check(system);
   if (tried_) drop_matrix();  // the step before was refused: joint rows may have been chosen anew
@@ -57,7 +56,7 @@ NewtonReport CoupledStages::iterate(const System& system, const NewtonOptions& o
     place(system);
     if (!kept_) whole_->zero();
     evaluate(system, kept_ ? nullptr : whole_.get());
-    judge(system, report);
+    judge(system, *whole_, report);
     if (!kept_)
       for (int i = 0; i < n_stages; ++i) kept_sigma_[i] = r_[i].sigma;
     if (!std::isfinite(report.residual)) return report.reason = "the residual is not finite", report;
@@ -108,14 +107,15 @@ NewtonReport CoupledStages::iterate(const System& system, const NewtonOptions& o
 }
 
 /// The largest relative residual.
-void CoupledStages::judge(const System& system, NewtonReport& report) {
+void CoupledStages::judge(const System& system, KktSolver& solver, NewtonReport& report) {
   report.residual = 0;
   for (Residual& r : r_) {
-    system.mask_fixed(r.r);
+    complete(system, solver, r);
     const double x = relative_residual(system, r);
     if (!(x <= report.residual)) report.residual = x;  // keeps a NaN
     report.least_det.take(r.least_det);
   }
+  report.residual = system.comm->max(report.residual);
 }
 
 double CoupledStages::largest_correction(const System& system) const {
@@ -123,7 +123,7 @@ double CoupledStages::largest_correction(const System& system) const {
   double worst = 0;
   for (int i = 0; i < n_stages; ++i)
     if (const double x = relative_correction(system, {z_.data() + i * n, n}); !(x <= worst)) worst = x;
-  return worst;
+  return system.comm->max(worst);
 }
 
 /// Largest force, and inertia over the square of time [N/m].

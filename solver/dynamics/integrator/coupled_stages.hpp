@@ -44,7 +44,7 @@ class CoupledStages : public Integrator {
 
  private:
   void couple(const System& system);
-  void judge(const System& system, NewtonReport& report);
+  void judge(const System& system, KktSolver& solver, NewtonReport& report);
   void build_triangular(const System& system, KktSolver& solver);
   SolveReport solve_triangular(const System& system, KktSolver& solver, const Eigen::Matrix3d& T);
   double largest_correction(const System& system) const;

@@ -13,7 +13,6 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/shell_shape.hpp"
 #include "dynamics/integrator/coupled_stages.hpp"
 #include "dynamics/integrator/director_columns.hpp"
 #include "dynamics/integrator/given_stages.hpp"
@@ -22,7 +21,6 @@
 #include "dynamics/profile.hpp"
 #include "dynamics/start.hpp"
 #include "system/collocation.hpp"
-#include "system/solids.hpp"
 
 namespace hilo {
 namespace {
@@ -74,7 +72,8 @@ class GaussIntegrator final : public CoupledStages {
       is_coupled_ = false, guess(system, s);
       report = iterate_triangular(system, tools.solver, triangular(), tools.newton);
     }
-    if (!report.converged && system.modes.empty()) {  // for some steps, since what made it hard seldom passes at once
+    if (!report.converged && system.modes.empty() && system.comm->size == 1) {
+      // for some steps, since what made it hard seldom passes at once
       coupled_steps_ = coupled_steps_ == 0 ? 8 : coupled_steps_ - 1;
       const int before = report.iterations;
       is_coupled_ = true, guess(system, s);
@@ -87,6 +86,7 @@ class GaussIntegrator final : public CoupledStages {
     given_.put_end(q1_);
     restore_rotations(system, q1_);
     combine(v1_, {{1, &v0_}, {h * weight[0], &a_[0]}, {h * weight[1], &a_[1]}, {h * weight[2], &a_[2]}});
+    if (!end_solver_) end_solver_ = tools.another_solver();
     if (!settle_velocities()) {
       refused_t_ = s.t, refused_h_ = h;
       report.converged = false, report.reason = "a step this long leaves the joints too much of the kinetic energy";
@@ -135,13 +135,6 @@ class GaussIntegrator final : public CoupledStages {
   }
 
  private:
-  void check(const System& system) const override {
-    const auto refuse = [](const std::string& what, const std::string& hint) { throw Error("", "gauss does not know " + what, hint); };
-    const std::string others = "use energy-momentum, or radau for references";
-    for (const SolidBatch& b : system.part<Solids>().batches)
-      if (b.shape == shell8) refuse("shells yet", "make their regions linear or rigid, or " + others);
-  }
-
   /// The polynomials of the step before go on; without one, constant velocities, or none.
   void guess(const System& system, const State& s) {
     const bool goes_on = past_h_ > 0 && predictor_ == Predictor::rigid_rotation;
@@ -293,7 +286,6 @@ class GaussIntegrator final : public CoupledStages {
   /// has its energy from the motion.  Where it is no longer small, it goes, and its energy with it [ascher-petzold-1991]; false where it is
   /// large.
   bool settle_velocities() {
-    if (!end_solver_) end_solver_ = make_light_solver(), end_solver_->structure(system_->layout.cliques, system_->layout.map);
     lost_ = given_.any() ? system_->energy(q1_, v1_).kinetic : 0;
     given_.put_rates(v1_);
     if (given_.any()) lost_ -= system_->energy(q1_, v1_).kinetic;

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "base/error.hpp"
 #include "dynamics/integrator/coupled_stages.hpp"
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/profile.hpp"
@@ -85,6 +86,10 @@ class RadauIntegrator final : public CoupledStages {
   }
 
  private:
+  void check(const System& system) const override {
+    if (system.comm->size > 1) throw Error("", "radau is serial", "run it without mpirun, or choose another time.integrator");
+  }
+
   void guess(const System& system, const State& s) {
     for (int i = 0; i < 3; ++i) {
       predict(system, s, c_[i] * h_, predictor_, a_end_, guess_);

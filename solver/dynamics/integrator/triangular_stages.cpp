@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "dynamics/integrator/coupled_stages.hpp"
+#include "dynamics/linear_step.hpp"
 #include "dynamics/profile.hpp"
 
 namespace hilo {
@@ -30,6 +31,7 @@ void CoupledStages::build_triangular(const System& system, KktSolver& solver) {
   Stage still = o.stage;
   still.a = &o.zero;
   system.evaluate(still, o.none, o.still, nullptr);
+  complete(system, solver, o.still.r);
   phases().evaluations += 2, ++phases().tangents;
   o.kept = o.pulls = true, o.weighed = false, o.h = h_;
 }
@@ -64,6 +66,7 @@ SolveReport CoupledStages::solve_triangular(const System& system, KktSolver& sol
     Stage trial = o.stage;
     trial.a = &o.trial_a;
     system.evaluate(trial, o.trial, o.by_trial, nullptr);
+    complete(system, solver, o.by_trial.r);
     ++phases().evaluations;
     o.pull[i].resize(first);
     for (int k = 0; k < first; ++k) o.pull[i][k] = o.b[k] - (o.by_trial.r[k] - o.still.r[k]);
@@ -71,11 +74,12 @@ SolveReport CoupledStages::solve_triangular(const System& system, KktSolver& sol
     if (o.weighed) continue;
     // where K z is nothing beside the inertia of z, as where bodies alone resolve their motion, it costs more than it gains
     system.evaluate(trial, o.none, o.by_trial, nullptr);
+    complete(system, solver, o.by_trial.r);
     ++phases().evaluations;
     double pull = 0, inertia = 0;
     for (int k = 0; k < first; ++k)
       pull = std::max(pull, std::abs(o.pull[i][k])), inertia = std::max(inertia, std::abs(o.by_trial.r[k] - o.still.r[k]));
-    o.pulls = !(pull < 2e-3 * inertia), o.weighed = true;
+    o.pulls = !(system.comm->max(pull) < 2e-3 * system.comm->max(inertia)), o.weighed = true;
   }
   for (int k = first; k < n; ++k) {  // A^2 l/d^2 was found
     const double y[3] = {z_[k], z_[n + k], z_[2 * n + k]};
@@ -99,7 +103,7 @@ NewtonReport CoupledStages::iterate_triangular(const System& system, KktSolver& 
       const Timed timed(phases().assembly);
       place(system);
       evaluate(system, nullptr);
-      judge(system, report);
+      judge(system, solver, report);
       if (!std::isfinite(report.residual)) return report.reason = "the residual is not finite", report;
       if (!one_.kept) build_triangular(system, solver), built = true, with_it = 0, last = 0;
     }
