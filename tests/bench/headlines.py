@@ -35,7 +35,8 @@ LIMITS = {"make -C tests": 3 * 3600, "make -C data/firing L": 2 * 3600, "make -C
 SUITE = "make -C tests"
 LEFT_OUT = {"make -C tests headlines": "this one", "make -C tests sanitize": "a day on two cores", "make -C tests package": "as root, from bare Debian",
             "make -C data/NAME": "a place holder"}
-SHORTER = {"make -C tests fuzz": ["SECONDS=2"]}  # as long as one likes: that it builds and begins
+SHORTER = {"make -C tests fuzz": ["SECONDS=2"],  # as long as one likes: that it builds and begins
+           "make -C tests faults": ["EVERY=7", "FLIPS=60"]}  # all kinds of faults in all scenes, at each seventh write
 PLACE_HOLDERS = r"\b(NAME|FOLDER|FLIPS|BEFORE|SEED|FILE)\b|<|\.\.\.|~/"
 
 
