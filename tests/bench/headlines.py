@@ -37,6 +37,8 @@ LEFT_OUT = {"make -C tests headlines": "this one", "make -C tests sanitize": "a 
             "make -C data/NAME": "a place holder"}
 SHORTER = {"make -C tests fuzz": ["SECONDS=2"],  # as long as one likes: that it builds and begins
            "make -C tests faults": ["EVERY=7", "FLIPS=60"]}  # all kinds of faults in all scenes, at each seventh write
+TOOLS = ["solver", "post", "tools", "CMakeLists.txt"]  # sources, not programs, which hold the name of the commit
+LESS = {"make -C tests bench-linear": ["solver/base", "solver/linear", "tests/bench/linear"]}  # what a command measures, where that is less
 PLACE_HOLDERS = r"\b(NAME|FOLDER|FLIPS|BEFORE|SEED|FILE)\b|<|\.\.\.|~/"
 
 
@@ -171,11 +173,12 @@ def main():
         return 0
     folder = os.path.join(build, "headlines")
     os.makedirs(folder, exist_ok=True)
-    tools = digest(repo, "solver", "post", "tools", "CMakeLists.txt")  # not of the programs, which hold the name of the commit
+    whole = digest(repo, *TOOLS)
+    tools_of = {c: digest(repo, *LESS[c]) if c in LESS else whole for c in named}
     table, done = os.path.join(folder, "table.tsv"), {}
     if os.path.exists(table):
         done = {row["command"]: row for row in csv.DictReader(open(table), delimiter="\t")}
-    went_through = {c for c, row in done.items() if row["exit"] == "0" and row["tools"] == tools}
+    went_through = {c for c, row in done.items() if row["exit"] == "0" and row["tools"] == tools_of.get(c)}
 
     def rank(command):  # the suite first, then what takes longest, as far as that is known; several targets last
         took = float(done[command]["seconds"]) if command in done else LIMITS.get(command, 300)
@@ -194,7 +197,7 @@ def main():
             code, seconds = run(command, tree, build, limit, log)
             print(f"  exit {code} after {seconds:.1f} s: {command}", flush=True)
         with one:
-            done[command] = {"command": command, "page": named[command], "exit": str(code), "seconds": f"{seconds:.1f}", "tools": tools,
+            done[command] = {"command": command, "page": named[command], "exit": str(code), "seconds": f"{seconds:.1f}", "tools": tools_of[command],
                              "when": datetime.datetime.now().isoformat(timespec="minutes"), "last": "seen by " + by if by else last_line(log)}
             if code == 0:
                 went_through.add(command)
