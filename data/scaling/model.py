@@ -46,7 +46,7 @@ def efficiencies(rows):
         yield P, "modelled: vehicle L", share / (IMBALANCE * share + serial[P]["undivided"] + exchange(P))
     yield 1, "measured", 1
     for P, work in measured.items():
-        yield P, "measured" if P <= os.cpu_count() else "measured, more ranks than cores", one / (P * work)
+        yield P, "measured" if P <= os.cpu_count() else "measured: more ranks than cores", one / (P * work)
 
 
 def main():
