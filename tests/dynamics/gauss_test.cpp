@@ -223,8 +223,8 @@ TEST(Gauss, IsTheSameOnRanks) {
                              {"both", rubber + "0.49", Shape::hex8, true, 0.1, 0.2, true, 8}}) {
     w.write("scene.toml", flying_bar(w, c));
     for (const int n : {1, 2, 3})
-      succeeded(
-          mpirun(n, fmt::format("hilo-solve --quiet scene.toml tags.h5 -o r{}.h5 --set time.step=0.002 --set time.end=0.01", n), w.path()));
+      succeeded(mpirun(n, fmt::format("hilo-solve --quiet scene.toml tags.h5 -o r{}.h5 --set time.step=0.002 --set time.end=0.004", n),
+                       w.path()));
     const Results one(w / "r1.h5");
     for (const char* n : {"r2.h5", "r3.h5"})
       for (const char* name : {"probe/tip", "energy", "momentum"}) {
