@@ -36,7 +36,8 @@ SUITE = "make -C tests"
 LEFT_OUT = {"make -C tests headlines": "this one", "make -C tests sanitize": "a day on two cores", "make -C tests package": "as root, from bare Debian",
             "make -C tests other-system SUITE=trixie": "as root, an hour on another Debian", "make -C data/NAME": "a place holder"}
 SHORTER = {"make -C tests fuzz": ["SECONDS=2"],  # as long as one likes: that it builds and begins
-           "make -C tests faults": ["EVERY=21", "FLIPS=30"]}  # all kinds of faults in all scenes, at some writes
+           "make -C tests faults": ["EVERY=21", "FLIPS=30"],  # all kinds of faults in all scenes, at some writes
+           "make -C tests bench-contact-growth": ["FACETS=10000"]}  # a minute of a quarter of an hour
 TOOLS = ["solver", "post", "tools", "CMakeLists.txt"]  # sources, not programs, which hold the name of the commit
 LESS = {"make -C tests bench-linear": ["solver/base", "solver/linear", "tests/bench/linear"]}  # what a command measures, where that is less
 PLACE_HOLDERS = r"\b(NAME|FOLDER|FLIPS|BEFORE|SEED|FILE)\b|<|\.\.\.|~/"
