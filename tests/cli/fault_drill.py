@@ -153,6 +153,12 @@ def any_instant(name, ranks, kills):
         except subprocess.TimeoutExpired:
             wrong(f"{name} on {ranks} ranks: hangs behind kill {k}")
             os.killpg(process.pid, signal.SIGKILL)
+        for _ in range(3000):  # mpirun ends before the last of its ranks does
+            if subprocess.run(["pgrep", "-s", str(process.pid), "--runstates", "RSD"], capture_output=True).returncode != 0:
+                break
+            time.sleep(0.01)
+        else:
+            wrong(f"{name} on {ranks} ranks: a rank outlives kill {k}")
         counts["kills"] += 1
         counts["rows kept"] += sound(name, f"kill {k} on {ranks} ranks", None)
         if process.returncode != 0:
