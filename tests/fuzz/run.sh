@@ -28,8 +28,9 @@ for reader in "${all[@]}"; do
   find "$repo/tests/faults/corpus" -name "$reader-*" -exec cp -t "$seeds/$reader" {} + 2> /dev/null || true
   words=()
   [ -e "$repo/tests/fuzz/$reader.dict" ] && words=(-dict="$repo/tests/fuzz/$reader.dict")
-  log=$folder/$reader.log
-  if HILO_FUZZ=$reader "$fuzz" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2500 -malloc_limit_mb=1000 -max_len=16384 -use_value_profile=1 \
+  log=$folder/$reader.log limit=10
+  [ "$reader" != store ] || limit=90  # the child that walks through a file has 60 s (solver/model/store_guard.cpp)
+  if HILO_FUZZ=$reader "$fuzz" -max_total_time="$seconds" -timeout=$limit -rss_limit_mb=2500 -malloc_limit_mb=1000 -max_len=16384 -use_value_profile=1 \
     -artifact_prefix="$folder/found/$reader-" "${words[@]}" "$folder/corpus/$reader" "$seeds/$reader" > "$log" 2>&1; then
     echo "$reader: $(grep -oE '^Done [0-9]+ runs in [0-9]+ second' "$log")s, $(grep -oE 'cov: [0-9]+' "$log" | tail -1), nothing found"
   else
