@@ -30,7 +30,7 @@ Registry<SolverKind>& solver_kinds() {
                                      {"cholesky", true, light},
                                      {"umfpack", true, light},
                                      {"direct", false, petsc},
-                                     {"cg", false, petsc},
+                                     {"cg", false, petsc, true},
                                      {"iterative", false, petsc},
                                      {"bddc", false, petsc},
                                      {"feti-dp", false, petsc}}};
@@ -77,8 +77,8 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   if (system.comm->size > 1 && system.traits().reaches && kind != "direct")
     throw Error(e.where("kind"), fmt::format("surfaces that meet or are tied run on several ranks with \"direct\" alone, not \"{}\"", kind),
                 "leave solver.kind out, or run without mpirun");
-  if (inverts(scene) && kind == "cg")
-    throw Error(e.where("kind"), "modes and buckling need solves to round-off, and \"cg\" stops at four digits",
+  if (inverts(scene) && chosen.coarse)
+    throw Error(e.where("kind"), fmt::format("modes and buckling need solves to round-off, and \"{}\" stops at four digits", kind),
                 "leave solver.kind out, or use iterative where no factor finds room");
   auto solver = chosen.make(kind, e);
   solver->structure(system.layout.cliques, system.layout.map);

@@ -23,6 +23,7 @@ struct SolverKind {
   std::string_view name;
   bool serial;
   std::unique_ptr<KktSolver> (*make)(const std::string& kind, const Entry& solver);
+  bool coarse = false;  // stops at four digits: no solves to round-off, as modes and buckling need
 };
 Registry<SolverKind>& solver_kinds();
 /// One more, from outside the tree: in the table, and a word of the scene.

@@ -342,7 +342,9 @@ class GaussIntegrator final : public CoupledStages {
 std::unique_ptr<Integrator> Gauss::make(const Entry&) { return make_gauss(make_light_solver()); }
 
 std::string Gauss::weakness(const Entry&, const System& system) {
-  return system.layout.map.n_global > 5000 ? "all three stages are solved at once: 27 times the entries of the other methods" : "";
+  return system.layout.map.n_global > 5000 && system.modes.empty() && system.comm->size == 1
+             ? "a step whose iteration does not converge is solved with all three stages at once, 27 times the entries of other methods"
+             : "";
 }
 
 std::unique_ptr<Integrator> make_gauss(std::unique_ptr<SerialKktSolver> solver) {
