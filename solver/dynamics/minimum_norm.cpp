@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hilo {
@@ -72,15 +73,18 @@ void MinimumNorm::take_rows(const Stage& stage) {
   each_part([&](int block, Eigen::Map<Vec3> g) { g.array() *= scale[block].array(); });
   A_.zero();
   rows_.clear(), column_.clear(), value_.clear();
+  std::array<double, max_directions * max_directions> K;
   for (int j = 0; j < cliques_.size(); ++j) {
     const DenseRows& own = G[j];
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, max_directions, max_directions> K =
-        decltype(K)::Zero(own.cols(), own.cols());
+    const auto n = static_cast<size_t>(own.cols());
+    std::fill_n(K.begin(), n * n, 0.0);
     for (Eigen::Index r = 0; r < own.rows(); ++r) {
-      for (Eigen::Index i = 0; i < own.cols(); ++i)
-        if (own(r, i) != 0) {
-          K.row(i) += own(r, i) * own.row(r);
-          column_.push_back(3 * cliques_[j][static_cast<size_t>(i / 3)] + static_cast<int>(i % 3)), value_.push_back(own(r, i));
+      const double* g = own.row(r).data();
+      for (size_t i = 0; i < n; ++i)
+        if (g[i] != 0) {
+          double* k = K.data() + i * n;
+          for (size_t c = 0; c < n; ++c) k[c] += g[i] * g[c];
+          column_.push_back(3 * cliques_[j][i / 3] + static_cast<int>(i % 3)), value_.push_back(g[i]);
         }
       rows_.push_back({j, all[j]->row() + static_cast<int>(r), all[j]->active()[static_cast<size_t>(r)], value_.size()});
     }

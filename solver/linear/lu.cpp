@@ -8,6 +8,7 @@
 #include <cmath>
 #include <new>
 
+#include "base/wide.hpp"
 #include "linear/blas_room.hpp"
 #include "linear/factors.hpp"
 
@@ -16,6 +17,12 @@ namespace {
 
 // Rows read as columns are the transpose: both factor it and solve transposed.
 
+HILO_WIDE long differing_from_zero(const double* x, size_t n) {
+  long count = 0;
+  for (size_t k = 0; k < n; ++k) count += x[k] != 0;
+  return count;
+}
+
 /// The entries that have ever differed from zero: many of a joint's never do, and a plane mechanism's motions out of its plane come apart
 /// from those within.
 class KeptEntries {
@@ -23,10 +30,10 @@ class KeptEntries {
   /// The entries of the pattern; false where another one differs from zero.
   bool gather(const BlockCsr& A) {
     const double* from = A.values().data();
-    long here = 0, all = 0;
-    for (size_t j = 0; j < place_.size(); ++j) value_[j] = from[place_[j]], here += value_[j] != 0;
-    for (size_t k = 0; k < A.values().size(); ++k) all += from[k] != 0;
-    return here == all;
+    const int* place = place_.data();
+    double* to = value_.data();
+    for (size_t j = 0; j < place_.size(); ++j) to[j] = from[place[j]];
+    return differing_from_zero(to, value_.size()) == differing_from_zero(from, A.values().size());
   }
   /// A new pattern, with these entries too.
   void widen(const BlockCsr& A) {

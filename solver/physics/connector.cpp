@@ -171,6 +171,7 @@ void add_geometric(const Connector& c, const ConnectorGradient& left, const Conn
         K.block<3, 3>(row + 3, col + 3) -= fh * Se * Sg;
       });
     for (size_t e = 0; e < c.entities.size(); ++e) {
+      if (left.dy[m][e] == Vec3::Zero()) continue;  // of most measures
       const int base = 6 * c.entities[e].end + 3;
       K.block<3, 3>(base, base) += f * skew(left.dy[m][e]) * skew(right.arm[e]);
     }
