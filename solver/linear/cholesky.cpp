@@ -155,8 +155,8 @@ class Cholesky final : public Factors {
   /// Nested dissection of the blocks, kept together.  What is joined comes last, where its part of the factor costs little beside the rest.
   void analyse(const BlockCsr& A, cholmod_sparse& F) {
     const auto m = static_cast<double>(3 * last_.size()), n = static_cast<double>(F.nrow);
-    constexpr double share = 0.25, likely = 10;  // of the work; of cells in space it is about ten times n^2
-    constexpr double most = 2000;                // unknowns there: 100 MB
+    constexpr double share = 0.5, likely = 10;  // of the work; of cells in space it is about ten times n^2
+    constexpr double most = 2000;               // unknowns there: 100 MB
     if (m > most || m * m * m > share * likely * n * n) last_.clear();
     std::vector<char> is_last(flexible_.size(), 0);
     for (const int b : last_) is_last[b] = 1;

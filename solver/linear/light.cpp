@@ -67,7 +67,7 @@ class LightSolver final : public SerialKktSolver {
     factors_ = is_klu_ ? make_klu(n_dense == A_.n()) : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_, joined(cliques));
     is_definite_ = kind == "cholesky";
     aside_.reset(), rest_ = 0;
-    factored_ = ready_ = lags_ = false, changed_ = true;
+    factored_ = ready_ = false, changed_ = true;
   }
 
   void zero() override { A_.zero(), factored_ = false, changed_ = true; }
@@ -280,7 +280,7 @@ class LightSolver final : public SerialKktSolver {
   bool factored_ = false;         // the factors at hand are those of the matrix
   bool changed_ = false;          // the matrix, since the last solve
   bool ready_ = false;            // the factors at hand serve it preconditioning
-  bool lags_ = false;             // factors of earlier matrices have been far from these: they are to follow
+  bool lags_ = false;             // factors of earlier matrices, of whatever structure, have been far from these: they are to follow
   double rate_ = 0, excess_ = 0;  // iterations per decade with fresh factors; those lagging has cost since
   std::vector<double> residual_, sums_, correction_, weight_;
   Gmres gmres_;
