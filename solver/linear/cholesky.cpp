@@ -8,6 +8,9 @@
 //
 // Where there are no bodies, what contact joins comes last in F.  The end E of its factor, E E^T = F_ee less what the rest takes away, is
 // made anew for a later matrix by the change of F_ee alone: contacts change from iteration to iteration, cells little.
+//
+// What slides with friction has no symmetric tangent, and its symmetric part may be indefinite.  Then F_ee gets a stiffness for the
+// factor that is taken from E E^T again, and the end has an LU of the whole of it.
 #include <Eigen/LU>
 #include <algorithm>
 #include <new>
@@ -54,14 +57,16 @@ class Cholesky final : public Factors {
     F.p = start_.data(), F.i = rows_.data(), F.x = values_.data();
     F.stype = -1, F.itype = CHOLMOD_INT, F.xtype = CHOLMOD_REAL, F.dtype = CHOLMOD_DOUBLE, F.packed = 1, F.sorted = 1;
     if (!L_) analyse(A, F);
-    if (!L_ || !cholmod_factorize(&F, L_, &common_)) {
-      if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE) throw std::bad_alloc();
-      return false;
+    if (stiffened_) stiffen(A);
+    if (!factorize(F)) {
+      if (last_.empty() || stiffened_) return false;
+      stiffened_ = true, stiffen(A);
+      if (!factorize(F)) return false;
     }
-    if (common_.status != CHOLMOD_OK || L_->minor != L_->n || !L_->is_super || !factor_schur(A)) return false;
+    if (!factor_schur(A)) return false;
     if (!last_.empty()) take_end(A);
     if (single_) single_values_.take_from(L_, common_);
-    return true;
+    return !stiffened_ || follow(A);
   }
 
   void solve(const double* b, double* x) override {
@@ -91,17 +96,24 @@ class Cholesky final : public Factors {
   /// The end of the factor, of what is joined, is made anew by what has changed there.
   bool follow(const BlockCsr& A) override {
     if (last_.empty()) return true;
-    const auto m = static_cast<Eigen::Index>(3 * last_.size());
+    const int m = static_cast<int>(3 * last_.size());
     if (end_schur_.size() == 0) {
       end_schur_.setZero(m, m);
-      lapack::gram(static_cast<int>(m), static_cast<int>(m), end_factor_.data(), end_schur_.data());
+      lapack::gram(m, m, end_factor_.data(), end_schur_.data());
       end_schur_ -= end_;
+      end_schur_.triangularView<Eigen::StrictlyUpper>() = end_schur_.transpose();
     }
-    end_factor_ = end_of(A);
-    end_factor_ += end_schur_;
-    follows_ = lapack::factor(static_cast<int>(m), end_factor_.data(), static_cast<int>(m));
+    const Eigen::MatrixXd end = end_of(A);
+    if (stiffened_) {
+      end_lu_ = (end + end_schur_).cast<float>();
+      follows_ = lapack::factor_whole(m, end_lu_.data(), pivots_);
+    } else {
+      end_factor_ = (end + end.transpose()) / 2 + end_schur_;
+      follows_ = lapack::factor(m, end_factor_.data(), m);
+    }
     return follows_;
   }
+  bool are_of_definite() const override { return !stiffened_; }
 
   bool sharpen() override { return std::exchange(single_, false); }
   double cost() const override {
@@ -155,9 +167,9 @@ class Cholesky final : public Factors {
   /// Nested dissection of the blocks, kept together.  What is joined comes last, where its part of the factor costs little beside the rest.
   void analyse(const BlockCsr& A, cholmod_sparse& F) {
     const auto m = static_cast<double>(3 * last_.size()), n = static_cast<double>(F.nrow);
-    constexpr double share = 0.5, likely = 10;  // of the work; of cells in space it is about ten times n^2
-    constexpr double most = 2000;               // unknowns there: 100 MB
-    if (m > most || m * m * m > share * likely * n * n) last_.clear();
+    constexpr double share = 3, likely = 10;  // of the work, which is denser there; of cells in space it is about ten times n^2
+    constexpr double most = 2000;             // unknowns there: 100 MB
+    if (m > most || m * m * m > 2 * share * likely * n * n) last_.clear();
     std::vector<char> is_last(flexible_.size(), 0);
     for (const int b : last_) is_last[b] = 1;
     std::vector<int> p{0}, i, before, place(flexible_.size(), -1);
@@ -209,7 +221,25 @@ class Cholesky final : public Factors {
     analyse(A, F);
   }
 
-  /// The part of sym(A) of what is joined, in the factor's order: its lower triangle.
+  bool factorize(cholmod_sparse& F) {
+    if (!L_ || !cholmod_factorize(&F, L_, &common_)) {
+      if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE) throw std::bad_alloc();
+      return false;
+    }
+    return common_.status == CHOLMOD_OK && L_->minor == L_->n && L_->is_super;
+  }
+
+  /// F_ee becomes definite, whatever of it slides: diagonals above the sums of their rows.
+  void stiffen(const BlockCsr& A) {
+    const Eigen::VectorXd more = stiffness_of(end_of(A));
+    for (const int k : last_)
+      for (int c = 0; c < 3; ++c) values_[start_[3 * k + c]] += more[place_[3 * k + c]];  // a column begins with its diagonal
+  }
+  static Eigen::VectorXd stiffness_of(const Eigen::MatrixXd& end) {
+    return end.cwiseAbs().rowwise().sum() + end.cwiseAbs().colwise().sum().transpose();
+  }
+
+  /// The part of A of what is joined, in the factor's order.
   Eigen::MatrixXd end_of(const BlockCsr& A) const {
     const auto m = static_cast<Eigen::Index>(3 * last_.size());
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(m, m);
@@ -218,13 +248,9 @@ class Cholesky final : public Factors {
       const auto list = A.neighbours(i);
       for (size_t n = 0; n < list.size(); ++n) {
         const int j = list[n];
-        if (place_[3 * number_[j]] < 0 || number_[j] < k) continue;
-        const int back = A.place(j, i);
+        if (place_[3 * number_[j]] < 0) continue;
         for (int c = 0; c < 3; ++c)
-          for (int r = j == i ? c : 0; r < 3; ++r) {
-            const auto [low, high] = std::minmax(place_[3 * k + c], place_[3 * number_[j] + r]);
-            out(high, low) = (A.entry(i, static_cast<int>(n), c, r) + A.entry(j, back, r, c)) / 2;
-          }
+          for (int r = 0; r < 3; ++r) out(place_[3 * k + r], place_[3 * number_[j] + c]) = A.entry(i, static_cast<int>(n), r, c);
       }
     }
     return out;
@@ -236,6 +262,9 @@ class Cholesky final : public Factors {
     const auto *super = static_cast<const int*>(L_->super), *pi = static_cast<const int*>(L_->pi), *rows = static_cast<const int*>(L_->s);
     const supernodal::DoubleValues values(L_);
     end_ = end_of(A), end_schur_.resize(0, 0);
+    const Eigen::VectorXd more = stiffness_of(end_);
+    end_ = ((end_ + end_.transpose()) / 2).eval();
+    if (stiffened_) end_.diagonal() += more;
     end_factor_.setZero(m, m);
     for (int s = static_cast<int>(L_->nsuper) - 1; s >= 0 && super[s + 1] > first; --s) {
       const int stride = pi[s + 1] - pi[s];
@@ -300,7 +329,11 @@ class Cholesky final : public Factors {
     for (int i = 0; i < n; ++i) work[i] = static_cast<T>(u[order[i]] / largest);  // within the range of single precision
     const int end = follows_ ? n - static_cast<int>(end_factor_.rows()) : n;
     supernodal::forward(L_, values, 0, end, work.data(), scratch);
-    if (follows_) {
+    if (follows_ && stiffened_) {
+      at_end_single_ = Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 1>>(work.data() + end, n - end).template cast<float>();
+      lapack::solve_whole(n - end, end_lu_.data(), pivots_, at_end_single_.data());
+      for (int i = end; i < n; ++i) work[i] = at_end_single_[i - end];
+    } else if (follows_) {
       at_end_ = Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 1>>(work.data() + end, n - end).template cast<double>();
       lapack::solve(n - end, 1, end_factor_.data(), at_end_.data());
       for (int i = end; i < n; ++i) work[i] = static_cast<T>(at_end_[i - end]);
@@ -327,8 +360,12 @@ class Cholesky final : public Factors {
   Eigen::VectorXd scale_, f_, g_, p_;
   Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
   std::vector<int> last_, place_;                 // flexible blocks that are joined, and where in the end of the factor each unknown is
-  Eigen::MatrixXd end_, end_schur_, end_factor_;  // sym(A) there when factored; what the rest adds to it; its factor
+  Eigen::MatrixXd end_, end_schur_, end_factor_;  // of F there when factored; what the rest adds to it; its factor
+  bool stiffened_ = false;                        // F was indefinite there: its factor is an LU
+  Eigen::MatrixXf end_lu_;
+  std::vector<int> pivots_;
   Eigen::VectorXd at_end_;
+  Eigen::VectorXf at_end_single_;
   bool follows_ = false;  // the end is a later matrix's
   bool single_ = true;
   supernodal::SingleValues single_values_;  // of L

@@ -22,6 +22,8 @@ class Factors {
   virtual bool sharpen() { return false; }
   /// The matrix has become A: takes up what costs little, so that the factors serve it better.  False: they serve no more.
   virtual bool follow(const BlockCsr& /*A*/) { return true; }
+  /// Where a kind factors definite matrices alone: whether the one at hand was one.
+  virtual bool are_of_definite() const { return true; }
   /// What a factorisation costs, in solves.
   virtual double cost() const = 0;
   virtual std::string name() const = 0;

@@ -20,6 +20,8 @@ void dtrmm_(const char*, const char*, const char*, const char*, const int*, cons
 void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*, double*, const int*);
 void dpotrf_(const char*, const int*, double*, const int*, int*);
 void dpotrs_(const char*, const int*, const int*, const double*, const int*, double*, const int*, int*);
+void sgetrf_(const int*, const int*, float*, const int*, int*, int*);
+void sgetrs_(const char*, const int*, const int*, const float*, const int*, const int*, float*, const int*, int*);
 void dtrtri_(const char*, const char*, const int*, double*, const int*, int*);
 void dsyevr_(const char*, const char*, const char*, const int*, double*, const int*, const double*, const double*, const int*, const int*,
              const double*, int*, double*, double*, const int*, int*, double*, const int*, int*, const int*, int*);
@@ -91,6 +93,20 @@ inline void subtract_gram(int n, int m, const double* M, int stride, double* G) 
 inline void solve(int n, int columns, const double* L, double* X) {
   int info = 0;
   dpotrs_("L", &n, &columns, L, &n, X, &n, &info);
+}
+
+/// A := its LU factors, (n x n), by rows exchanged.  False when it is singular.
+inline bool factor_whole(int n, float* A, std::vector<int>& pivots) {
+  int info = 0;
+  pivots.resize(static_cast<size_t>(n));
+  sgetrf_(&n, &n, A, &n, pivots.data(), &info);
+  return info == 0;
+}
+/// x := A^-1 x, by these.
+inline void solve_whole(int n, const float* LU, const std::vector<int>& pivots, float* x) {
+  const int one = 1;
+  int info = 0;
+  sgetrs_("N", &n, &one, LU, &n, pivots.data(), x, &n, &info);
 }
 
 /// L := L^-1, (n x n).

@@ -84,10 +84,11 @@ class LightSolver final : public SerialKktSolver {
   }
   bool repeats_cheaply() const override { return is_klu_; }
   std::optional<int> eigenvalues_below_zero(int first_row) override {
-    if (is_definite_ && std::ranges::none_of(is_dense_, std::identity())) {  // their factors tell as well, and serve the next matrix
+    if (is_definite_ && factors_->are_of_definite() &&
+        std::ranges::none_of(is_dense_, std::identity())) {  // their factors tell as well, and serve the next matrix
       const Stopwatch watch(set_up_);
       ready_ = factors_->factor(A_);
-      if (ready_) return excess_ = 0, 0;
+      if (ready_ && factors_->are_of_definite()) return excess_ = 0, 0;
     }
     return hilo::eigenvalues_below_zero(A_, first_row);
   }
