@@ -78,7 +78,9 @@ RestReport come_to_rest(RunParts& run, State& state, const LoadLevel& under) {
   for (int k = 0; k < most && tau > least; ++k) {
     const Residual forces = forces_at_rest(run, under, state.q, state.lambda);  // by what the last step chose
     const auto balanced = [&](const Residual& r) {
-      return system.comm->max(relative_residual(system, r)) <= std::max(run.newton.tolerance, 2 * report.residual);
+      constexpr double rounding = 1e-5;  // a step so short that nothing moves leaves any force
+      return system.comm->max(relative_residual(system, r)) <=
+             std::clamp(2 * report.residual, run.newton.tolerance, std::max(rounding, run.newton.tolerance));
     };
     const bool rests = stays && balanced(forces);
     if (rests && tau == longest) return report;

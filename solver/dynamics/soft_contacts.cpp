@@ -46,6 +46,14 @@ NewtonReport SoftContacts::find(LoadStep& step, double t, double ramp, const New
   const auto either = [&] { return begins_soft ? softly() : solve(options, &step); };
   NewtonReport report = either();
   if (report.converged || !touching(system)) return report;
+  if (system.moves() && system.traits().slides) {  // what moves by a law takes along what lies on it: what sticks is found first
+    begin_again();
+    touching(system)->stick(true);
+    report = solve(options, &step);
+    touching(system)->stick(false);
+    if (report.converged) report = solve(options, nullptr);
+    if (report.converged) return report;
+  }
   begin_again();
   begins_soft = !begins_soft;
   report = either();

@@ -271,16 +271,24 @@ void Builder::add_points_of_body(const Entry& e, const Obstacle& b, int body, Co
     out_->stiffness = std::max(out_->stiffness, 2 * E * R * std::sqrt(1e-3));
   }
   const Vec3 centre = b.at - out_->bodies[body].Xc;
-  pair.n_points = ball ? 1 : 8;
+  const int n_walls = pair.shape.n_walls();
+  for (int k = 0; k < n_walls && n_walls > 1; ++k) pair.walls.push_back(pair.shape.of_wall(k));
+  pair.n_points = (ball ? 1 : 8) * n_walls;
   if (!out_->counts(body)) return;
+  const auto add = [&] {
+    for (int k = 0; k < n_walls; ++k) {
+      point.wall = n_walls > 1 ? k : -1;
+      pair.points.push_back(point);
+    }
+  };
   if (ball) {
     point.arm = centre, law.radius = b.shape.radius, point.cell = 0.1 * b.shape.radius;
-    pair.points.push_back(std::move(point));
+    add();
   } else {
     point.cell = b.shape.half.minCoeff();
     for (int k = 0; k < 8; ++k) {
       point.arm = centre + b.axes * Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1).cwiseProduct(b.shape.half);
-      pair.points.push_back(point);
+      add();
     }
   }
   pair.number.resize(pair.points.size());

@@ -50,8 +50,8 @@ Contacts::Did Contacts::advance(ContactPair& pair, const Stage& s) {
     if (const std::string why = gone_through(pair, point, at.x0, at.x1); !why.empty()) out.why = why;
     if (settles(s)) continue;
     if (point.law.loss > 0)
-      point.next_approach =
-          Approach{s.h, point.approach}.after(pair.shape.at(at.x0) - point.law.radius, pair.shape.at(at.x1) - point.law.radius);
+      point.next_approach = Approach{s.h, point.approach}.after(pair.met_by(point).at(at.x0) - point.law.radius,
+                                                                pair.met_by(point).at(at.x1) - point.law.radius);
     out.dissipated += at.force.dissipated;
     out.pressing += at.force.pressing, out.slid += at.force.pressing * at.force.slid;
   }

@@ -27,13 +27,15 @@ struct ContactPoint {
   HeldPoint held;                          // in small motions about a state
   bool parts = false;                      // touches without pressure, and would be pulled in the step at work
   int clique = -1;
+  int wall = -1;  // of the obstacle, that this point meets alone; -1: all of it
 };
 
 struct ContactPair {
   std::string name, told;  // `told`: what the stiffness is and from what
   Distance shape;
-  int carrier = 0;         // the body that carries it
-  Vec3 at = Vec3::Zero();  // from its centre, body axes [m]
+  std::vector<Distance> walls;  // of it, that points have by number
+  int carrier = 0;              // the body that carries it
+  Vec3 at = Vec3::Zero();       // from its centre, body axes [m]
   Mat3 axes = Mat3::Identity();
   int body = -1;  // of the points, or -1: they have nodes
   double friction = 0;
@@ -44,6 +46,8 @@ struct ContactPair {
   bool has_facets = false;
   int outside = 0;  // points that start past the border of a height field
   ContactSums sums, next;
+
+  const Distance& met_by(const ContactPoint& point) const { return point.wall < 0 ? shape : walls[static_cast<size_t>(point.wall)]; }
 };
 
 }  // namespace hilo

@@ -72,7 +72,7 @@ Vec3 Contacts::measures(const ContactPair& pair, const Vec3& x, const Config& q)
 }
 
 double Contacts::gap(const ContactPair& pair, const ContactPoint& point, const Config& q) const {
-  return pair.shape.at(measures(pair, position(pair, point, q), q)) - point.law.radius;
+  return pair.met_by(point).at(measures(pair, position(pair, point, q), q)) - point.law.radius;
 }
 
 void Contacts::hold(const Config& q) {
@@ -88,6 +88,11 @@ void Contacts::soften(double most) {
   for (SurfacePair& pair : surfaces) pair.most = most;
 }
 
+void Contacts::stick(bool on) {
+  sticks_ = on;
+  for (SurfacePair& pair : surfaces) pair.sticks = on;
+}
+
 double Contacts::depth(const Config& q) const {
   double deepest = 0;
   each_pair([&](const ContactPair& pair) {
@@ -100,9 +105,9 @@ double Contacts::depth(const Config& q) const {
 template <class T>
 PointForce<T> Contacts::force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
                               const Stage& s, bool fixed) const {
-  if (!is_static_ && !settles(s)) return over_step(pair.shape, point.law, x0, x1, way, point.u, {s.h, point.approach});
+  if (!is_static_ && !settles(s)) return over_step(pair.met_by(point), point.law, x0, x1, way, point.u, {s.h, point.approach});
   const double share = most_ < HUGE_VAL ? std::min(1., most_ * point.deep / point.cell) : 1;
-  return at_end(pair.shape, point.law.as(share, fixed), x0, x1, way, point.u, touch(point), point.deep / share);
+  return at_end(pair.met_by(point), point.law.as(share, fixed, sticks_), x0, x1, way, point.u, touch(point), point.deep / share);
 }
 
 Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const {
@@ -113,7 +118,7 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
   const PointLaw& law = point.law;
   const bool is_start = this->is_start(s);
   const double open = is_static_ || settles(s) ? touch(point) : 0;
-  if (!is_start && pair.shape.at(at.x0) >= law.radius + open && pair.shape.at(at.x1) >= law.radius + open) {
+  if (!is_start && pair.met_by(point).at(at.x0) >= law.radius + open && pair.met_by(point).at(at.x1) >= law.radius + open) {
     at.force.normal = at.force.tangential = at.force.n = at.force.u = triple<double>(Vec3::Zero());
     at.force.dissipated = law.kt / 2 * point.u.squaredNorm();
     return at;
@@ -129,17 +134,17 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
   if (rolls) {
     double phi;
     Triple<double> n;
-    pair.shape(triple<double>((at.x0 + at.x1) / 2), phi, n);
+    pair.met_by(point)(triple<double>((at.x0 + at.x1) / 2), phi, n);
     at.low = -law.radius * (at.Am * values(n));
     at.lowest = at.turn.inverse() * at.low;
     at.way = at.A1.transpose() * (at.turn1 * at.lowest) - at.A0.transpose() * (at.turn0 * at.lowest);
   }
   if (holds())
-    at.force = about(point.held, pair.shape, law, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), point.u);
+    at.force = about(point.held, pair.met_by(point), law, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), point.u);
   else if (!is_start)
     at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), s);
   else
-    at.force = at_rest(pair.shape, law, triple<double>((1 - s.weight) * at.x0 + s.weight * at.x1), point.u);
+    at.force = at_rest(pair.met_by(point), law, triple<double>((1 - s.weight) * at.x0 + s.weight * at.x1), point.u);
   at.normal = at.Am * values(at.force.normal), at.tangential = at.Am * values(at.force.tangential);
   return at;
 }
@@ -189,10 +194,10 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
     Triple<T> x1 = triple<T>(at.x1), way = triple<T>(at.x1 - at.x0 + at.way);
     for (int i = 0; i < 3; ++i) x1[i].d[i] = 1, way[i].d[N - 3 + i] = 1;
     const auto f = [&] {
-      if (holds()) return about(point.held, pair.shape, point.law, x1, way, point.u);
+      if (holds()) return about(point.held, pair.met_by(point), point.law, x1, way, point.u);
       if (!is_start(s)) return force(pair, point, at.x0, x1, way, s, s.fixed_friction);
       const Triple<T> x = s.e0 == s.e1 ? x1 : T(1 - s.weight) * triple<T>(at.x0) + T(s.weight) * x1;
-      return at_rest(pair.shape, point.law, x, point.u);
+      return at_rest(pair.met_by(point), point.law, x, point.u);
     }();
     for (int i = 0; i < 3; ++i) {
       J_normal.row(i) = f.normal[i].d.template head<3>(), J_n.row(i) = f.n[i].d.template head<3>();

@@ -45,6 +45,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   std::string apart(const Config& q) const override;
   void hold(const Config& q) override;
   void soften(double most) override;
+  void stick(bool on) override;
   double depth(const Config& q) const override;
   void each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const override;
   /// Points that are past the border of a height field, on this rank.
@@ -106,6 +107,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   Config about_;              // in small motions: the state
   Config committed_, begin_;  // the state accepted last; of load steps: where the step began
   double most_ = HUGE_VAL;    // of E over the depth of the cells, on the way to an answer
+  bool sticks_ = false;       // friction holds whatever pulls, on the way to an answer
   std::string jumped_;        // what the step tried last went through
 };
 

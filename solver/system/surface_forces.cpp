@@ -32,7 +32,7 @@ FacetForce<T> SurfacePair::force(const SurfacePoint& point, const Stage& s, cons
                                  const OverTriangle<T>& z1) const {
   if (!about_.empty()) return about(point.held, point.law, z0, z1, point.now.past);
   if (s.conserving()) return over_step(point.law, z0, z1, point.now.past, s.h);
-  return at_end(point.law.as(share(), s.fixed_friction), z0, z1, point.now.past, touch(point), deep(point));
+  return at_end(point.law.as(share(), s.fixed_friction, sticks), z0, z1, point.now.past, touch(point), deep(point));
 }
 
 FacetForce<double> SurfacePair::force_of(int k, const SurfacePoint& point, const Stage& s) const {

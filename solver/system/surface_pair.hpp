@@ -36,6 +36,7 @@ class SurfacePair {
   bool is_static = false;  // load steps: forces at their end, of the gap itself
   double factor = 1;       // of the stiffness
   double most = HUGE_VAL;  // of E over the depth of the cells, on the way to an answer
+  bool sticks = false;     // whatever pulls, on the way to an answer
   bool loses = false;      // by restitution
   bool hangs = false;      // both hang together: they may have nodes in common
   bool itself = false;     // both are one: side 0 has the points, side 1 the facets that they meet

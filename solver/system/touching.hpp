@@ -29,6 +29,8 @@ class Touching {
   };
   /// From now on none is stiffer than this share of E/l, the facet's own cell, on the way to an answer; HUGE_VAL: all as they are.
   virtual void soften(double most) = 0;
+  /// From now on friction holds whatever pulls, on the way to an answer, or no more.
+  virtual void stick(bool on) = 0;
   /// Largest depth, as a share of the facet's cell.  Collective.
   virtual double depth(const Config& q) const = 0;
   /// For each facet of this rank.

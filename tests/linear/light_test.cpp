@@ -155,5 +155,31 @@ TEST(Light, FactorsFollowWhatContactChanges) {
   }
 }
 
+// Nodes that one clique joins slide with friction: its matrix has no symmetry, and its symmetric part is indefinite.  The factor of the
+// cells stays, and the end of it has an LU.
+TEST(Light, FactorsServeWhatSlides) {
+  Problem p = elastic_bar(16, 6, 6, 1e3);
+  const int n_cells = static_cast<int>(p.cliques.size());
+  const int n = p.n_flexible;
+  p = cut(std::move(p), n);
+  std::vector<int> joined;
+  for (int i = 0; i < 17; ++i) joined.push_back(40 * i % p.n_flexible);
+  p.cliques.push_back(joined), p.rank.push_back(0), p.everywhere.push_back(true);
+  double stiffness = 0;
+  p.matrix = [matrix = p.matrix, n_cells, &stiffness](int e) {
+    if (e < n_cells) return matrix(e);
+    test::Matrix K = test::Matrix::Zero(51, 51);
+    for (int i = 0; i < 17; ++i) K(3 * i + 2, 3 * i + 2) = stiffness, K(3 * i, 3 * i + 2) = 0.5 * stiffness;
+    return K;
+  };
+  Light light(std::move(p), "cholesky");
+  for (const double k : {1e5, 1e4, 1e6, 10., 0., 1e5}) {
+    stiffness = k;
+    EXPECT_LT(light.solve(1), 1e-9) << k;
+    EXPECT_LE(light.report.iterations, 12) << k;
+    EXPECT_EQ(light.solver->name(), "light (CHOLMOD)") << k;
+  }
+}
+
 }  // namespace
 }  // namespace hilo

@@ -19,6 +19,7 @@ struct Distance {
   double half_length = 0;    // of cylinder (0: no ends) and capsule [m]
   Vec3 half = Vec3::Zero();  // of a box [m]
   bool inside = false;       // what moves is within: bowl, bore, container
+  int wall = -1;             // of such a box, or cylinder with ends: this wall alone, of `n_walls`
   std::shared_ptr<const HeightField> field{};
   double reach = 0;  // radius of what meets a field: farther off, its distance is one to first order [m]
 
@@ -29,6 +30,16 @@ struct Distance {
     if (kind == Kind::box) return half.minCoeff();
     if (kind == Kind::torus) return tube;
     return kind == Kind::cylinder && half_length > 0 ? std::min(radius, half_length) : radius;
+  }
+  /// That a point may meet at once: in an edge or a corner it presses several, whose nearest one alone would leave it out of balance.
+  int n_walls() const {
+    if (!inside || (kind != Kind::box && (kind != Kind::cylinder || half_length == 0))) return 1;
+    return kind == Kind::box ? 6 : 3;
+  }
+  Distance of_wall(int k) const {
+    Distance out = *this;
+    out.wall = k;
+    return out;
   }
   /// A length of it, for round-off [m].
   double extent() const { return std::max({radius + tube, half_length, half.maxCoeff(), field ? field->extent() : 0}); }
@@ -88,10 +99,13 @@ struct Distance {
           phi = r - T(radius), n = {{nx, ny, zero}};
           break;
         }
-        const double side = value(x[2]) < 0 ? -1 : 1;
+        const double side = wall == 1 || (wall < 0 && value(x[2]) < 0) ? -1 : 1;
         const T q[2] = {r - T(radius), T(side) * x[2] - T(half_length)};
-        T slope[2];
-        beyond(q, 2, phi, slope);
+        T slope[2] = {wall == 0 ? one : zero, wall == 0 ? zero : one};
+        if (wall < 0)
+          beyond(q, 2, phi, slope);
+        else
+          phi = q[wall == 0 ? 0 : 1];
         n = {{slope[0] * nx, slope[0] * ny, T(side) * slope[1]}};
         break;
       }
@@ -108,8 +122,12 @@ struct Distance {
       case Kind::box: {
         T q[3], slope[3];
         double side[3];
-        for (int i = 0; i < 3; ++i) side[i] = value(x[i]) < 0 ? -1 : 1, q[i] = T(side[i]) * x[i] - T(half[i]);
-        beyond(q, 3, phi, slope);
+        for (int i = 0; i < 3; ++i)
+          side[i] = wall % 2 == 1 || (wall < 0 && value(x[i]) < 0) ? -1 : 1, q[i] = T(side[i]) * x[i] - T(half[i]);
+        if (wall < 0)
+          beyond(q, 3, phi, slope);
+        else
+          phi = q[wall / 2], slope[0] = slope[1] = slope[2] = zero, slope[wall / 2] = one;
         for (int i = 0; i < 3; ++i) n[i] = T(side[i]) * slope[i];
         break;
       }

@@ -30,11 +30,13 @@ struct PointLaw {
   T limit(const T& p) const {
     return value(p) > 0 ? T(friction / kt) * (fixed ? T(value(p)) : p) : T(0.0);
   }
-  /// On the way to an answer: a share of the stiffness; with or without the change of mu p.
-  PointLaw as(double share, bool is_fixed) const {
+  /// On the way to an answer: a share of the stiffness; with or without the change of mu p; with friction that holds whatever pulls.
+  PointLaw as(double share, bool is_fixed, bool sticks) const {
+    constexpr double any = 1e30;
     PointLaw out = *this;
     out.k *= share, out.hertz *= share, out.kt *= share;
     out.fixed = is_fixed;
+    if (sticks && friction > 0) out.friction = any;
     return out;
   }
 };

@@ -55,6 +55,32 @@ TEST_F(Buckling, OfAHeavyColumnIsGreenhills) {
   EXPECT_NEAR(factors(column("a = \"ground\"", 24) + weight, 1)[0] / 783.73, 1, 2e-3);
 }
 
+// Truth: a rod of 1 m on a hinge between two guys of 100 N (or slack by 20 N), l^2 = 1.25 m^2: 2 (k cos^2 + P/l sin^2) - 2 P/l.  The guys
+// press the hinge, and with it the rod: the factor knew this force of the joint from where the centre of the rod is.
+TEST_F(Buckling, OfAMastBetweenTightGuys) {
+  const auto guys = [](const std::string& on, double preload) {
+    std::string text;
+    for (const double side : {0.5, -0.5})
+      text += spring("axial", side > 0 ? "left" : "right", "ground", on,
+                     fmt::format("at_a = [{}, 0, 0]\nat_b = [0, 0, 1]\nstiffness = 200\npreload = {}\n", side, preload));
+    return text;
+  };
+  const auto truth = [](double preload) {
+    const double l = std::sqrt(1.25);
+    return 2 * (200 * 0.2 + preload / l * 0.8) - 2 * preload / l;
+  };
+  const std::string hinged = axial("revolute", "p", "ground", "a", Vec3::Zero(), Vec3::UnitY());
+  for (const double centre : {0., 0.3, 1.})
+    for (const double preload : {0., 7., 100., -20.})
+      EXPECT_NEAR(factors(rod("a", centre) + hinged + guys("a", preload) + down("a", 1), 1)[0], truth(preload), 1e-4) << centre << preload;
+  const std::string mast = column("");
+  EXPECT_NEAR(factors(mast + axial("revolute", "p", "ground", "arm.0", Vec3::Zero(), Vec3::UnitY()) + guys("arm.end", 7) +
+                          push("arm.end", Vec3(0, 0, -1)),
+                      1)[0] /
+                  truth(7),
+              1, 0.1);
+}
+
 TEST_F(Buckling, OfRigidRodsIsThatOfTheirSprings) {
   EXPECT_NEAR(factors(rod("a", 0.3) + hinge("p", "ground", "a", 0, 10) + down("a", 0.8), 3)[0], 12.5, 1e-5);
   const auto two =
