@@ -30,9 +30,8 @@ class Factors {
   virtual double bytes() const = 0;
 };
 
-/// Solves that take as long as a factorisation of so many flops: while a solve reads one of its entries, that does about eight (measured
-/// from 5000 to 100 000 unknowns).
-inline double factor_cost(double flops, double entries) { return 1 + flops / (8 * (entries + 1)); }
+/// Solves that take as long as `flops` of dense factorisation: a solve reads its entries once at memory speed, eight flops each.
+inline double factor_cost(double flops, double entries) { return 1 + flops / (16 * (entries + 1)); }
 
 /// LU that keeps its pivots while they serve [davis-2010]; for some thousand unknowns, of bodies and joints alone (`of_bodies`) some ten
 /// thousand.
