@@ -135,7 +135,8 @@ std::optional<Unstable> Stability::look(const Config& q, const std::vector<doubl
 void Stability::tell_unknown(const std::string& solver) {
   fmt::print(
       stderr,
-      "stability was not examined: solver {} does not count eigenvalues of the tangent (solver.kind = \"light\" or \"direct\" does)\n",
+      "stability was not examined: the eigenvalues of the tangent are not counted by solver {} here (\"light\" and \"direct\" count them, "
+      "unless a motion has no stiffness at all)\n",
       solver);
 }
 

@@ -176,7 +176,7 @@ TEST(GrowingFile, IsOfOneWriterAtATime) {
       FAIL() << "a second writer";
     } catch (const Error& e) {
       EXPECT_EQ(e.exit, Exit::resources);
-      EXPECT_EQ(e.message, "another run is writing it");
+      EXPECT_EQ(e.message, "another program has it open");
     }
     if (has_name) {
       EXPECT_THROW(Store::open_growing(path), Error);
