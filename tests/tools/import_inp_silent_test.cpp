@@ -57,6 +57,10 @@ TEST_F(ImportInpSilent, DataThatNoReaderAsksForIsTold) {
   expect_told("text before the first keyword", "1, 2\n" + deck);
   imported_deck("modes.inp", bar + held + "*STEP\n*FREQUENCY\n2, , , 1e-3\n" + end);
   expect_said("*FREQUENCY: its fourth number");
+  for (const char* limits : {"300.", ", 2000.", "300., 2000."}) {
+    imported_deck("modes.inp", bar + held + "*STEP\n*FREQUENCY\n2, " + limits + "\n" + end);
+    expect_said("*FREQUENCY: its limits (the lowest modes are looked for)");
+  }
 }
 
 TEST_F(ImportInpSilent, NamesInLatin1BecomeUtf8) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Materials of decks: what is plastic, rubber or orthotropic reaches the scene lines, and what has no law here is never taken for elastic.
+#include <fmt/format.h>
+
 #include "import_case.hpp"
 #include "model/scene.hpp"
 
@@ -130,6 +132,95 @@ TEST_F(ImportMaterial, RubbersReachTheScene) {
   e = Scene::load(place / "s.toml").entries("material")[0];
   EXPECT_NEAR(e.number("bulk"), 20e6, 1e-6) << "mu = 1 MPa, D1 = 0.1/mu";
   expect_said("has D1 = 0 (incompressible): taken as 0.1/mu");
+}
+
+/// A strip of S4, 0.5 m along x and 0.05 along y, clamped and pushed up at its end, all of it turned about y.  E1 is 100 GPa,
+/// E2 10 GPa, and there is no contraction.
+std::string strip(const std::string& orientation, const std::string& section, double tilt = 0, double bend = 0) {
+  const Mat3 turn = Eigen::AngleAxisd(-tilt, Vec3::UnitY()).toRotationMatrix();
+  const Vec3 n = turn.col(2);
+  std::string deck = "*NODE\n";
+  for (int i = 0; i <= 10; ++i)
+    for (int j = 0; j < 2; ++j) {
+      const Vec3 x = turn * Vec3(0.05 * i, 0.05 * j, bend * i * i);
+      deck += fmt::format("{}, {:.15g}, {:.15g}, {:.15g}\n", 1 + i + 100 * j, x.x(), x.y(), x.z());
+    }
+  deck += "*ELEMENT, TYPE=S4, ELSET=E\n";
+  for (int i = 1; i <= 10; ++i) deck += fmt::format("{}, {}, {}, {}, {}\n", i, i, i + 1, i + 101, i + 100);
+  deck +=
+      "*MATERIAL, NAME=ply\n*ELASTIC, TYPE=ENGINEERING CONSTANTS\n1e11, 1e10, 1e9, 0, 0, 0, 5e9, 5e9\n5e9\n*DENSITY\n1600\n" + orientation;
+  deck += "*SHELL SECTION, ELSET=E, " + section + "*BOUNDARY\n1, 1, 6\n101, 1, 6\n*STEP\n*STATIC\n*CLOAD\n";
+  for (const int node : {11, 111})
+    for (int k = 0; k < 3; ++k) deck += fmt::format("{}, {}, {:.15g}\n", node, k + 1, 0.005 * n[k]);
+  return deck + "*END STEP\n";
+}
+const std::string across = "*ORIENTATION, NAME=o\n0, 1, 0, -1, 0, 0\n", along = "*ORIENTATION, NAME=o\n1, 0, 0, 0, 1, 0\n",
+                  plate = "MATERIAL=ply, ORIENTATION=o\n.005\n", bare = "MATERIAL=ply\n.005\n";
+
+// P L^3 / 3EI is 80e-6 m where E2 lies along the strip, 8e-6 m where E1 does; CalculiX 2.20 has 79.80 and 7.984 of each tilt
+TEST_F(ImportMaterial, ShellsTakeTheirOrientationIntoTheirSurface) {
+  const auto deflection = [&](const std::string& text, double tilt = 0) {
+    solve(text, "a.inp", "--thicken");
+    const Vec3 tip = Vec3(0.5 * std::cos(tilt), 0.025, 0.5 * std::sin(tilt));
+    const auto ran = succeeded(
+        place.run(fmt::format("hilo-post at run.h5 displacement --point {:.15g},{:.15g},{:.15g} --steps last", tip.x(), tip.y(), tip.z())));
+    std::istringstream words(ran.out.substr(ran.out.find_last_of('\n', ran.out.size() - 2) + 1));
+    double length = 0;
+    for (double x = 0; words >> x;) length = x;  // [um]
+    return length;
+  };
+  EXPECT_NEAR(deflection(strip(across, plate)), 80, 0.4);
+  EXPECT_NEAR(deflection(strip(along, plate)), 8, 0.04);
+  EXPECT_NEAR(deflection(strip(along + "3, 90.\n", plate)), 80, 0.4);
+  EXPECT_NEAR(deflection(strip(across, plate, 0.5), 0.5), 80, 0.4) << "axis 2 is laid into the surface";
+  EXPECT_NEAR(deflection(strip("", bare, 0.5), 0.5), 8, 0.04) << "x, laid into the surface";
+  EXPECT_NEAR(deflection(strip("", bare, M_PI / 2), M_PI / 2), 8, 0.04) << "z, where x is the normal";
+  EXPECT_NEAR(deflection(strip(across, "COMPOSITE\n.002,,ply,o\n.003,,ply,o\n")), 80, 0.4);
+  EXPECT_NEAR(deflection(strip(across, "COMPOSITE, ORIENTATION=o\n.002,,ply\n.003,,ply\n")), 80, 0.4);
+  EXPECT_NEAR(deflection(strip(along, "COMPOSITE, ORIENTATION=o\n.002,,ply,90.\n.003,,ply,90.\n")), 80, 0.4);
+}
+
+TEST_F(ImportMaterial, AnOrientationOfShellsThatIsNoOneDirectionIsTold) {
+  const auto told = [&](const std::string& text, const std::string& what) {
+    imported_deck("a.inp", text, "--thicken --scene-out s.toml");
+    expect_said(what);
+    EXPECT_EQ(Scene::load(place / "s.toml").entries("material").size(), 0u) << what;
+    EXPECT_NE(test::text_of(place / "s.toml").find("[[left_out]]\ncard = \"" + what), std::string::npos) << what;
+  };
+  told(strip(across, plate, 0, 0.002), "*ORIENTATION of shells that do not lie in one plane");
+  told(strip("", bare, 0, 0.002), "*ELASTIC that differs with direction, of shells that do not lie in one plane");
+  // Abaqus takes axis 2 there, CalculiX axis 3
+  told(strip("*ORIENTATION, NAME=o\n0, 0, 1, 0, 1, 0\n", plate), "*ORIENTATION of shells whose normal is not near its axis 3");
+  told(strip(along + "1, 0.\n", plate, 1), "*ORIENTATION of shells whose normal is not near its axis 3");
+  told(strip(across, "COMPOSITE\n.002,,ply,o\n.003,,ply\n"), "*SHELL SECTION, COMPOSITE of several orientations");
+  told(strip(along, "COMPOSITE, ORIENTATION=o\n.002,,ply,0.\n.003,,ply,90.\n"), "*SHELL SECTION, COMPOSITE of several orientations");
+  told(strip("*ORIENTATION, NAME=o, SYSTEM=CYLINDRICAL\n0, 0, 0, 0, 0, 1\n", plate), "*ORIENTATION, SYSTEM=CYLINDRICAL");
+  refused_deck("a.inp", strip(along + "4, 90.\n", plate), "-o b.h5 --thicken", 2, "a.inp:43:1: *ORIENTATION o: axis 4 (1, 2 or 3)");
+  refused_deck("a.inp", strip("", plate), "-o b.h5 --thicken", 2, "a.inp:41:52: *SHELL SECTION: no orientation \"o\"");
+  // shells that are not thickened are rigid, and keep the axes as they are
+  imported_deck("a.inp", strip(across, plate, 0, 0.002), "--scene-out s.toml");
+  EXPECT_EQ(Scene::load(place / "s.toml").entries("material")[0].numbers("axis_1"), (std::vector<double>{0, 1, 0}));
+}
+
+TEST_F(ImportMaterial, AnOrientationTurnsAboutAnAxis) {
+  imported_deck("a.inp",
+                cubes +
+                    "*ORIENTATION, NAME=o\n0., 2., 0., -1., 0., 0.\n1, 90.\n*MATERIAL, NAME=ply\n*ELASTIC, TYPE=ENGINEERING CONSTANTS\n"
+                    "10e9, 5e9, 4e9, .3, .2, .25, 3e9, 2e9\n1e9\n*ELSET, ELSET=all\nlow, high\n"
+                    "*SOLID SECTION, ELSET=all, MATERIAL=ply, ORIENTATION=o\n",
+                "--scene-out s.toml");
+  const auto b = Scene::load(place / "s.toml").entries("material")[0].numbers("axis_2");
+  EXPECT_NEAR(b[0], 0, 1e-15);
+  EXPECT_NEAR(b[2], 1, 1e-15) << "axis 3";
+}
+
+TEST_F(ImportMaterial, AMaterialGivenTwiceIsRefused) {
+  refused_deck("a.inp", with("*ELASTIC\n2.1e11, .3\n*MATERIAL, NAME=M\n*ELASTIC\n1e11, .3\n"), "-o b.h5", 2,
+               "a.inp:21:17: *MATERIAL M is given twice, first at a.inp:18 (name each once)");
+  place.write("m.inc", "*MATERIAL, NAME=m\n*ELASTIC\n2.1e11, .3\n");  // one file that is read twice says one thing
+  imported_deck("a.inp", cubes +
+                             "*INCLUDE, INPUT=m.inc\n*INCLUDE, INPUT=m.inc\n*ELSET, ELSET=all\nlow, high\n"
+                             "*SOLID SECTION, ELSET=all, MATERIAL=m\n");
 }
 
 std::string bulk(const std::string& entries) {

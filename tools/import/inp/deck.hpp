@@ -48,6 +48,8 @@ struct InpOrientation {
   Vec3 a = Vec3::UnitX(), b = Vec3::UnitY();
   std::string not_read = {};  // "*ORIENTATION, SYSTEM=CYLINDRICAL"
   std::string place;
+  int about = 0;       // the axis that its second line names
+  Mat3 frame() const;  // its axes, as columns
 };
 struct InpSection {
   std::string elset, material;  // upper case, and as written
@@ -59,6 +61,8 @@ struct InpSection {
   std::string card = "*SOLID SECTION";
   double thickness = 0, offset = 0;   // of shells: the mid-surface off the nodes, along the normal
   std::string no_solid = {};          // of shells: why a solid-shell cannot stand for them
+  double turn = 0;                    // of shells: the axes of their material about the normal, in degrees
+  bool several_directions = false;    // of shells: layers of one material, turned
   DeckSection beam = {};              // of beams
   bool along_n2 = false;              // of beams: axis 2 of `beam` is n2, not n1
   Vec3 n1 = Vec3(0, 0, -1);           // of beams
@@ -271,7 +275,8 @@ struct InpDeck {
   std::map<std::string, InpSet> nset, elset;  // by upper-case name
   std::vector<std::string> nset_order, elset_order;
   std::vector<InpSurface> surfaces;
-  std::map<std::string, DeckMaterial> materials;  // by upper-case name
+  std::map<std::string, DeckMaterial> materials;   // by upper-case name
+  std::map<std::string, std::string> material_at;  // where these are said
   std::map<std::string, InpOrientation> orientations;
   std::map<std::string, DeckMaterial> laws;  // those that sections use, turned by their orientation
   std::string material;                      // the one that *ELASTIC and *DENSITY speak of

@@ -26,30 +26,6 @@ void check_names(const InpDeck& d) {
   }
 }
 
-/// The law of each section: its material, where it differs with direction turned by the section's orientation.
-void turn_materials(InpDeck& d, Imported& in) {
-  for (auto& s : d.sections) {
-    DeckMaterial law;  // of a section without a material: none
-    if (s.own)
-      law = *s.own;
-    else if (s.material.empty())
-      law.no_law = (s.no_solid.empty() ? s.card + " without MATERIAL" : s.no_solid) + ", " + s.place;
-    else
-      law = d.materials.at(s.material);
-    s.law = s.own ? "\n" + s.elset : s.material;
-    if (law.kind == "orthotropic" && law.no_law.empty() && !s.orientation.empty()) {
-      const InpOrientation& o = d.orientations.at(s.orientation);
-      s.law += "\n" + s.orientation;
-      law.name += "_" + o.name;
-      law.set({"axis_1", {o.a.x(), o.a.y(), o.a.z()}, "1", true});
-      law.set({"axis_2", {o.b.x(), o.b.y(), o.b.z()}, "1", true});
-      law.no_law = o.not_read;
-      if (!o.not_read.empty()) in.skip(o.not_read, o.place);
-    }
-    d.laws.try_emplace(s.law, std::move(law));
-  }
-}
-
 /// Sets that have a pyramid have both halves of it.
 void complete_pyramids(InpDeck& d) {
   if (d.pyramids.empty()) return;
@@ -286,11 +262,11 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   find_motions(d, in);
   join_steps(d, in);
   check_names(d);
-  turn_materials(d, in);
   if (options.rigid_beams ||
       (!options.thicken && std::ranges::any_of(d.shape, [](auto s) { return info(static_cast<Shape>(s)).dimension == 2; })))
     beams_as_cells(d);
   resolve_cells(d, in);
+  turn_materials(d, in, options.thicken);
   tell_pyramids(in, static_cast<std::int64_t>(d.pyramids.size()) / 2);
   find_beams(d, in);
   thin_sections(d, in, options.thicken);

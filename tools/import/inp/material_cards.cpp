@@ -2,6 +2,7 @@
 // The cards of an .inp deck that say materials and which cells are of them.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdlib>
@@ -26,6 +27,9 @@ namespace {
 void read_material(InpReading& r) {
   const std::string name = r.card.need("NAME");
   r.deck.material = upper(name);
+  // of one place: a part that each instance reads, or a file that is included twice
+  if (const auto [at, fresh] = r.deck.material_at.emplace(r.deck.material, r.card.place()); !fresh && at->second != r.card.place())
+    throw Error(r.card.place("NAME"), fmt::format("*MATERIAL {} is given twice, first at {}", name, at->second), "name each once");
   r.deck.materials[r.deck.material].name = name;
 }
 
@@ -186,6 +190,17 @@ void read_damping(InpReading& r) {
   }
 }
 
+/// The second line: an axis, and by how many degrees the others are turned about it.
+void turn_orientation(InpOrientation& o, const DataLine& l) {
+  const double axis = l.number(0, 1);
+  if (axis != 1 && axis != 2 && axis != 3) throw Error(l.place(0), fmt::format("*ORIENTATION {}: axis {:g}", o.name, axis), "1, 2 or 3");
+  o.about = static_cast<int>(axis);
+  if (l.number(1) == 0) return;
+  const Mat3 frame = o.frame();
+  const Mat3 turn = Eigen::AngleAxisd(l.number(1) * std::numbers::pi / 180, frame.col(o.about - 1)).toRotationMatrix();
+  o.a = turn * frame.col(0), o.b = turn * frame.col(1);
+}
+
 void read_orientation(InpReading& r) {
   InpOrientation o;
   o.name = r.card.need("NAME"), o.place = r.card.place();
@@ -199,7 +214,7 @@ void read_orientation(InpReading& r) {
     first_line(r, l, "a point on axis 1, one in the plane 1-2");
     for (int i = 0; i < 3; ++i) o.a[i] = l.number(i) - l.number(6 + i), o.b[i] = l.number(3 + i) - l.number(6 + i);
     if (!(o.a.cross(o.b).norm() > 0)) throw Error(l.place(), fmt::format("*ORIENTATION {}: the two points span no plane", o.name));
-    if (r.lines.next_data(l) && l.number(1) != 0) o.not_read = "*ORIENTATION turned about an axis";
+    if (r.lines.next_data(l)) turn_orientation(o, l);
   }
   r.deck.orientations[upper(o.name)] = o;
 }
@@ -213,34 +228,44 @@ InpSection section_of(InpReading& r, bool layered = false) {
   return s;
 }
 
+void take_orientation(const Card& card, InpSection& s) {
+  if (!card.has("ORIENTATION")) return;
+  s.orientation_name = card.need("ORIENTATION"), s.orientation = upper(s.orientation_name), s.orientation_place = card.place("ORIENTATION");
+}
+
 void read_section(InpReading& r) {
-  const Card& card = r.card;
   InpSection s = section_of(r);
-  if (card.has("ORIENTATION"))
-    s.orientation_name = card.need("ORIENTATION"), s.orientation = upper(s.orientation_name),
-    s.orientation_place = card.place("ORIENTATION");
+  take_orientation(r.card, s);
   DataLine l;
   if (r.lines.next_data(l)) s.area = l.number(0);
   r.deck.sections.push_back(s);
 }
 
-/// Lines of COMPOSITE: thickness, points of integration, material and orientation of each layer.  Layers of one material are one plate.
+/// Lines of COMPOSITE: thickness, points of integration, material, and an orientation of the layer's own or an angle by which the section's
+/// is turned.  Layers of one material are one plate.
 void read_layers(InpReading& r, InpSection& s) {
   bool same = true;
+  const InpSection whole = s;
   for (DataLine l; r.lines.next_data(l);) {
     const double t = l.number(0);
     if (!(t > 0)) throw Error(l.place(0), fmt::format("{}: a layer of thickness {:g}", r.card.name, t));
     if (l.empty(2)) throw Error(l.place(), r.card.name + ", COMPOSITE: a layer without a material", "thickness, , MATERIAL");
-    if (s.thickness == 0) {
-      s.material = upper(l.text(2)), s.material_name = l.text(2), s.material_place = l.place(2);
-      if (!l.empty(3)) s.orientation = upper(l.text(3)), s.orientation_name = l.text(3), s.orientation_place = l.place(3);
+    InpSection layer = whole;
+    layer.material = upper(l.text(2)), layer.material_name = l.text(2), layer.material_place = l.place(2);
+    if (!l.empty(3)) {
+      const std::string word(l.text(3));
+      char* end = nullptr;
+      layer.turn = std::strtod(word.c_str(), &end);
+      if (*end) layer.turn = 0, layer.orientation = upper(word), layer.orientation_name = word, layer.orientation_place = l.place(3);
     }
-    same = same && upper(l.text(2)) == s.material && (l.empty(3) || upper(l.text(3)) == s.orientation);
+    if (s.thickness == 0) s = layer;
+    same = same && layer.material == s.material;
+    s.several_directions = s.several_directions || layer.orientation != s.orientation || layer.turn != s.turn;
     s.thickness += t;
   }
   if (!(s.thickness > 0)) throw Error(r.card.place() + ":1", r.card.name + ", COMPOSITE lacks its layers", "thickness, , MATERIAL");
   if (same) return;
-  s.no_solid = r.card.name + ", COMPOSITE of several materials or orientations", s.material.clear();
+  s.no_solid = r.card.name + ", COMPOSITE of several materials", s.material.clear();
   r.skip(s.no_solid + ": no stiffness, no density");
 }
 
@@ -251,6 +276,7 @@ void read_shell_section(InpReading& r) {
       !odd.empty() || r.card.has("DENSITY"))
     throw Error(r.card.place() + ":1", (odd.empty() ? r.card.name + ", DENSITY" : odd) + " is not read", "give a material and a thickness");
   InpSection s = section_of(r, layered);
+  take_orientation(r.card, s);
   if (layered) {
     read_layers(r, s);
   } else {

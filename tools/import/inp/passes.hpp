@@ -42,6 +42,9 @@ void join_steps(InpDeck& deck, Imported& in);
 /// What is left of a line without the components from `first` to `last`.
 std::vector<InpNodal> without(const InpNodal& line, int first, int last);
 
+/// The law of each section: its material.  Where that differs with direction, it has the section's axes, in shells laid into their surface.
+void turn_materials(InpDeck& deck, Imported& in, bool thicken);
+
 // beams, and shells that become pairs of nodes
 /// Beams as cells of bars; an Error where one has three nodes.
 void beams_as_cells(InpDeck& deck);

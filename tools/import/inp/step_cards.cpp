@@ -141,7 +141,7 @@ void read_procedure(InpReading& r) {
   s.direct = r.card.has("DIRECT") || r.card.has("EXPLICIT");
   r.card.find("SOLVER");  // of no effect here
 }
-/// How many modes or shapes; a band of frequencies is not asked for, and the accuracy of the search is ours.
+/// How many modes or shapes, the lowest ones; the accuracy of the search is ours.
 void read_modes(InpReading& r) {
   const bool frequency = r.card.key == "FREQUENCY";
   step_of(r).procedure = r.card.name;
@@ -150,6 +150,8 @@ void read_modes(InpReading& r) {
   DataLine l;
   if (!r.lines.next_data(l)) return;
   step_of(r).n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
+  if (frequency && (l.number(1) != 0 || l.number(2) != 0))
+    r.in.skip("*FREQUENCY: its limits (the lowest modes are looked for)", l.place(l.number(1) != 0 ? 1 : 2));
   if (frequency && l.number(3) != 0) r.in.skip("*FREQUENCY: its fourth number (it scales masses, or is a shift)", l.place(3));
   l.ignore_rest();
 }
