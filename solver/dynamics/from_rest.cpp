@@ -55,7 +55,9 @@ Residual forces_at_rest(RunParts& run, const LoadLevel& under, const Config& q, 
 }  // namespace
 
 std::string keep_at_rest(System& system, const Config& q, const LoadLevel& under) {
-  system.commit(q), system.advance(rest_at(q, under));
+  Stage s = rest_at(q, under);
+  s.mass_slope = 1;  // which tells it from a load step
+  system.commit(q), system.advance(s);
   return system.fault(q);
 }
 

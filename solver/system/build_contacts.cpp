@@ -61,7 +61,8 @@ void refuse_what_is_not_there(const Scene& scene, const Entry& e) {
   const Entry& time = scene.table("time");
   const std::string label = e.label();
   if (time.text("analysis") == "static" || time.text("analysis") == "path") {
-    if (e.given("restitution")) e.refuse("restitution", "load steps have no impacts", "leave it out");
+    if (e.number("restitution") < 1)
+      e.refuse("restitution", "load steps have no impacts, so that restitution is 1", "leave restitution out");
     return;
   }
   if (time.text("analysis") == "modes") return;

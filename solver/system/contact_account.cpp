@@ -91,6 +91,7 @@ Contacts::Did Contacts::look_at_way(const ContactPair& pair, const Stage& s) con
 
 void Contacts::advance(const Stage& s) {
   if (!touches()) return;
+  const bool on_the_way = is_static_ && s.mass_slope > 0;  // of a load step, from rest
   std::string why;
   for (SurfacePair& pair : surfaces)
     if (const std::string told = pair.advance(s); !told.empty()) why = told;
@@ -102,16 +103,17 @@ void Contacts::advance(const Stage& s) {
     if (is_start(s)) break;
     tell(heap.unforeseen(begin(s), *s.e1));
     heap.next = heap.sums;
-    double pressing = 0, slid = 0;
+    double pressing = 0, slid = 0, work = 0;
     for (ContactPair& pair : heap.near) {
       const Did did = advance(pair, s);
       tell(did.why);
       if (settles(s)) continue;
-      pressing += did.pressing, slid += did.slid, heap.next.dissipated += did.dissipated;
+      pressing += did.pressing, slid += did.slid, work += did.dissipated;
       pair.next = pair.sums, pair.next.add(did.pressing, did.slid);
       if (pair.next.impacts == pair.sums.impacts) continue;
       heap.next.shortest = heap.next.impacts++ == 0 ? pair.sums.steps : std::min(heap.next.shortest, pair.sums.steps);
     }
+    heap.next.add_work(work, heap.law.friction, pressing, slid, on_the_way);
     if (pressing > 0) heap.next.slip += slid / pressing;
   }
   const bool at_instant = plain && is_start(s) && !is_static_;
@@ -126,7 +128,7 @@ void Contacts::advance(const Stage& s) {
   comm.sum(sums);
   for (size_t k = 0; 4 * k < sums.size(); ++k) {
     list[k].next = list[k].sums;
-    list[k].next.dissipated += sums[4 * k + 2];
+    list[k].next.add_work(sums[4 * k + 2], list[k].friction, sums[4 * k], sums[4 * k + 1], on_the_way);
     list[k].next.outside = std::max(list[k].sums.outside, static_cast<int>(sums[4 * k + 3]));
     list[k].next.add(sums[4 * k], sums[4 * k + 1]);
   }

@@ -20,6 +20,14 @@ void ContactSums::add(double pressing, double slid) {
   }
 }
 
+void ContactSums::add_work(double work, double friction, double pressing, double slid, bool on_the_way) {
+  if (on_the_way) {
+    if (pressing > 0) way += slid / pressing;
+  } else {
+    dissipated += work + friction * std::max(pressing, 0.) * way, way = 0;
+  }
+}
+
 void SurfacePair::prepare() {
   for (int s = 0; s < 2; ++s) {
     side[s].find_borders();
@@ -76,7 +84,7 @@ std::string SurfacePair::advance(const Stage& s) {
     if (std::ranges::any_of(unlisted, [&](const auto& pair) { return meets_unlisted(pair, x0, x1); }))
       why = fmt::format("contact \"{}\": facets meet that were not foreseen", name);
   }
-  double pressing = 0, slid = 0;
+  double pressing = 0, slid = 0, work = 0, friction = 0;
   look(x0, x1);
   each_listed([&](int k, SurfacePoint& point) {
     point.next = point.now;
@@ -86,10 +94,10 @@ std::string SurfacePair::advance(const Stage& s) {
       point.next.past.gap = f.gap, point.next.past.bent = f.bent;
       point.next.past.approach = Approach{s.h, point.now.past.approach}.after(point.now.past.gap, f.gap);
       point.next.past.offset = at_end_alone() ? 0 : gap_of(over(k, point, point.now, x1)) - f.gap;
-      next.dissipated += f.dissipated, pressing += f.pressing, slid += f.pressing * f.slid;
+      work += f.dissipated, friction = point.law.friction, pressing += f.pressing, slid += f.pressing * f.slid;
       if (f.acts) return;
     }
-    next.dissipated += released(point);
+    work += released(point);
     if (held) return;
     const Vec3 p0 = side[k].at(point, x0), p1 = side[k].at(point, x1), middle = at_end_alone() ? p1 : Vec3((p0 + p1) / 2);
     const double way = (p1 - p0).norm() / 2;
@@ -100,10 +108,8 @@ std::string SurfacePair::advance(const Stage& s) {
       return;
     if (target_of(k, point, x0, x1).crossed) why = fmt::format("contact \"{}\": a point goes through a facet within one step", name);
   });
-  if (settles)
-    next = sums;
-  else
-    next.add(pressing, slid);
+  if (settles) return why;
+  next.add_work(work, friction, pressing, slid, is_static && s.mass_slope > 0), next.add(pressing, slid);
   return why;
 }
 

@@ -96,21 +96,21 @@ std::array<FacetGradient<T>, 2> slip_gradients(const OverTriangle<T>& m, const s
   return out;
 }
 
-/// The bristle after a slip sigma, shortened to mu p/kt, and its force along S.
+/// The bristle, stiffened by q, after a slip sigma, shortened to mu p/(q kt), and its force along S.
 template <class T>
-void bend(const PointLaw& law, const std::array<T, 2>& sigma, const std::array<FacetGradient<T>, 2>& S, const T& p, const FacetPast& past,
-          FacetForce<T>& out) {
-  std::array<T, 2> u{T(past.bent[0]) + sigma[0], T(past.bent[1]) + sigma[1]};
-  const T limit = law.limit(p), square = u[0] * u[0] + u[1] * u[1];
+void bend(const PointLaw& law, const std::array<T, 2>& sigma, const std::array<FacetGradient<T>, 2>& S, const T& p, const T& q,
+          const FacetPast& past, FacetForce<T>& out) {
+  std::array<T, 2> u{T(past.bent[0]) + q * sigma[0], T(past.bent[1]) + q * sigma[1]};
+  const T limit = law.limit(p, q), square = u[0] * u[0] + u[1] * u[1];
   if (value(square) > value(limit) * value(limit)) {
     const T size = sqrt(square);
-    out.slid = value(size) - value(limit);
+    out.slid = (value(size) - value(limit)) / value(q);
     u = {limit / size * u[0], limit / size * u[1]};
   }
   for (int e = 0; e < 2; ++e) {
-    S[e].add(T(law.kt) * u[e], out);
+    S[e].add(T(law.kt) * q * u[e], out);
     out.bent[e] = value(u[e]);
-    out.dissipated += law.kt * out.bent[e] * (value(sigma[e]) - out.bent[e] / 2);
+    out.dissipated += law.kt * out.bent[e] * (value(q) * value(sigma[e]) - out.bent[e] / 2);
   }
 }
 
@@ -149,11 +149,11 @@ FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, con
     }
   }
   out.gap = T(past.gap) + way, out.acts = true;
-  const T stored = secant(law, past.gap, out.gap), p = damped(law, stored, past.gap, out.gap, {h, past.approach});
+  const T stored = secant(law, past.gap, out.gap), c = damping(law, stored, past.gap, out.gap, {h, past.approach}), p = c * stored;
   D.add(-p, out);
   out.pressing = value(p), out.normal = values(D.r), out.dissipated = lost + (value(p) - value(stored)) * (past.gap - value(out.gap));
   if (law.friction <= 0 || !(value(p) > 0)) return out;
-  bend(law, sigma, S, p, past, out);
+  bend(law, sigma, S, p, stiffening(c), past, out);
   return out;
 }
 
@@ -217,7 +217,8 @@ FacetForce<T> at_end(const PointLaw& law, const OverTriangle<double>& z0, const 
   std::array<T, 2> foot_of_mean;
   gap_gradient(mean, unit(cross(mean.t1, mean.t2)), foot_of_mean);
   const auto way = slip_gradients(mean, foot_of_mean), S = slip_gradients(z1, foot);
-  bend(law, {way[0](dz), way[1](dz)}, S, p, past, out);
+  bend(law, {way[0](dz), way[1](dz)}, S, p, T(1.0), past, out);
+  out.dissipated = law.kt * std::hypot(out.bent[0], out.bent[1]) * out.slid;
   return out;
 }
 

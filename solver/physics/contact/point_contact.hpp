@@ -5,8 +5,11 @@
 //   D = n + (phi1 - phi0 - n.dxi)/|dxi|^2 dxi,   D.dxi = phi1 - phi0;   f = s D,   s = (V1 - V0)/(phi1 - phi0)
 // so that a step keeps energy and momentum at any length [gonzalez-1996].  Friction: u is how far a bristle of stiffness kt is bent,
 //   u1 = u0 + sigma, shortened to mu p/kt,   f = kt u1,   D = kt u1.sigma - kt (|u1|^2 - |u0|^2)/2 >= 0
-// Restitution: the pressure is s (1 + alpha times the speed of approach), at least zero, as of stops (physics/stop): what it takes is above
-// zero in and out, and it acts along D, so that momenta stay.
+// Restitution: the pressure is c s, c = 1 + alpha times the speed of approach, at least zero, as of stops (physics/stop): what it takes is
+// above zero in and out, and it acts along D, so that momenta stay.  The bristle is stiffened with the pressure, to q^2 kt with q =
+// sqrt(c):
+//   u1 = u0 + q sigma, shortened to mu p/(q kt),   f = q kt u1,   D = kt u1.(q sigma) - kt (|u1|^2 - |u0|^2)/2 >= 0
+// u^2 kt/2 is what it stores at any q, which is of the step alone: a change of q neither adds nor takes any.
 #pragma once
 #include "physics/contact/distance.hpp"
 
@@ -25,10 +28,10 @@ struct PointLaw {
   double potential(double gap) const;
   /// Of a ball of relative radius R on a ball, plane or bowl: 4/3 E* sqrt(R), and along the surface the slope at a depth of R/1000.
   void take_hertz(double E, double R) { hertz = 4. / 3 * E * std::sqrt(R), kt = (2 * 0.7 / 1.7) * 2 * E * R * std::sqrt(1e-3); }
-  /// How far the bristle bends at most, mu p/kt [m].
+  /// How far the bristle bends at most, mu p/(q kt) [m].
   template <class T>
-  T limit(const T& p) const {
-    return value(p) > 0 ? T(friction / kt) * (fixed ? T(value(p)) : p) : T(0.0);
+  T limit(const T& p, const T& q) const {
+    return value(p) > 0 ? T(friction / kt) * (fixed ? T(value(p)) : p) / q : T(0.0);
   }
   /// On the way to an answer: a share of the stiffness; with or without the change of mu p; with friction that holds whatever pulls.
   PointLaw as(double share, bool is_fixed, bool sticks) const {
@@ -69,16 +72,22 @@ struct Approach {
   }
 };
 
-/// The pressure p of a step from gap g0 to g1 with what restitution takes: p (1 + loss rate/speed), the quotient at most 1, at least zero.
-/// What comes faster than the contact began, as a part at rest that is hit, begins anew with its own speed.
+/// What restitution multiplies the pressure p of a step from gap g0 to g1 by: c = 1 + loss rate/speed, the quotient at most 1, c at least
+/// zero.  What comes faster than the contact began, as a part at rest that is hit, begins anew with its own speed.
 template <class T>
-T damped(const PointLaw& law, const T& p, double g0, const T& g1, const Approach& approach) {
-  if (law.loss == 0 || approach.h <= 0 || !(value(p) > 0)) return p;
+T damping(const PointLaw& law, const T& p, double g0, const T& g1, const Approach& approach) {
+  if (law.loss == 0 || approach.h <= 0 || !(value(p) > 0)) return T(1.0);
   const T rate = (T(g0) - g1) / T(approach.h);
   const double speed = std::max(g0 > 0 ? 0. : approach.speed, law.slow);
-  if (value(rate) >= speed) return T(1 + law.loss) * p;
+  if (value(rate) >= speed) return T(1 + law.loss);
   const T factor = T(law.loss / speed) * rate;
-  return value(factor) > -1 ? p * (T(1.0) + factor) : T(0.0);
+  return value(factor) > -1 ? T(1.0) + factor : T(0.0);
+}
+
+/// q of the bristle, sqrt(c); below 1 what goes on from there straight, so that it stays above zero.
+template <class T>
+T stiffening(const T& c) {
+  return value(c) > 1 ? sqrt(c) : T(0.5) * (T(1.0) + c);
 }
 
 /// What a point feels, in axes of the obstacle.
@@ -92,21 +101,21 @@ struct PointForce {
   bool acts = false;
 };
 
-/// The bristle after the material point has gone `way` along an obstacle of normal out.n, shortened to mu p/kt.
+/// The bristle, stiffened by q, after the material point has gone `way` along an obstacle of normal out.n, shortened to mu p/(q kt).
 template <class T>
-void bend(const PointLaw& law, const Triple<T>& way, const Vec3& u0, const T& p, PointForce<T>& out) {
+void bend(const PointLaw& law, const Triple<T>& way, const Vec3& u0, const T& p, const T& q, PointForce<T>& out) {
   if (law.friction <= 0) return;
   const Triple<T> bent = triple<T>(u0);
-  const Triple<T> sigma = way - dot(out.n, way) * out.n;
+  const Triple<T> sigma = q * (way - dot(out.n, way) * out.n);
   const Triple<T> trial = bent - dot(out.n, bent) * out.n + sigma;
-  const T limit = law.limit(p), square = dot(trial, trial);
+  const T limit = law.limit(p, q), square = dot(trial, trial);
   out.u = trial;
   if (value(square) > value(limit) * value(limit)) {
     const T size = sqrt(square);
     out.u = (limit / size) * trial;
-    out.slid = value(size) - value(limit);
+    out.slid = (value(size) - value(limit)) / value(q);
   }
-  out.tangential = T(law.kt) * out.u;
+  out.tangential = (T(law.kt) * q) * out.u;
   const Vec3 u1 = values(out.u), s = values(sigma);
   out.dissipated = law.kt * (u1.dot(s) - (u1.squaredNorm() - u0.squaredNorm()) / 2);
 }
@@ -138,9 +147,9 @@ PointForce<T> over_step(const Distance& shape, const PointLaw& law, const Vec3& 
   Triple<T> D = out.n;
   const T rest = phi1 - T(phi0) - dot(out.n, dx);
   if (std::abs(value(rest)) > 1e-14 * (shape.extent() + x0.norm())) D = D + (rest / dot(dx, dx)) * dx;
-  const T stored = secant(law, g0, g1), p = damped(law, stored, g0, g1, approach);
+  const T stored = secant(law, g0, g1), c = damping(law, stored, g0, g1, approach), p = c * stored;
   out.normal = (-p) * D, out.pressing = value(p);
-  bend(law, way, u0, p, out);
+  bend(law, way, u0, p, stiffening(c), out);
   out.dissipated += (value(p) - value(stored)) * (g0 - value(g1));
   return out;
 }
@@ -152,7 +161,8 @@ inline bool is_closed(double gap, double before, double touch) { return gap < 0 
 inline bool is_pulled(double gap, double before, double touch) { return gap > 1e-4 * touch && is_closed(gap, before, touch); }
 
 /// At the measures x1 that a load step from x0 leads to: the gradient of the potential, `touch` as of is_closed [m].  A guess may be far
-/// deeper than any answer, `deep` [m]; the tangent then has no more of the stiffness of a turning normal than at that depth.
+/// deeper than any answer, `deep` [m]; the tangent then has no more of the stiffness of a turning normal than at that depth.  What it
+/// dissipates is mu p times the slip.
 template <class T>
 PointForce<T> at_end(const Distance& shape, const PointLaw& law, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way, const Vec3& u0,
                      double touch, double deep) {
@@ -173,7 +183,8 @@ PointForce<T> at_end(const Distance& shape, const PointLaw& law, const Vec3& x0,
   if (depth > deep)
     for (T& x : n.x) slow_down(x, deep / depth);
   out.normal = (-p) * n, out.pressing = value(p);
-  bend(law, way, u0, p, out);
+  bend(law, way, u0, p, T(1.0), out);
+  out.dissipated = law.kt * values(out.u).norm() * out.slid;
   return out;
 }
 
