@@ -38,7 +38,7 @@ class Cholesky final : public Factors {
     }
     is_dense_ = is_dense;
     for (size_t i = 0; i < joined.size() && dense_.empty(); ++i)
-      if (joined[i]) last_.push_back(number_[i]);
+      if (joined[i]) joined_.push_back(number_[i]);
   }
   ~Cholesky() override {
     cholmod_free_dense(&y_, &common_), cholmod_free_dense(&e_, &common_), cholmod_free_dense(&u_, &common_);
@@ -59,8 +59,13 @@ class Cholesky final : public Factors {
     if (!L_) analyse(A, F);
     if (stiffened_) stiffen(A);
     if (!factorize(F)) {
-      if (last_.empty() || stiffened_) return false;
-      stiffened_ = true, stiffen(A);
+      if (joined_.empty() || std::exchange(tried_, true)) return false;
+      stiffened_ = true;
+      cholmod_free_factor(&L_, &common_);
+      analyse(A, F);
+      stiffened_ = !last_.empty();
+      if (!stiffened_) return false;
+      stiffen(A);
       if (!factorize(F)) return false;
     }
     if (!factor_schur(A)) return false;
@@ -164,11 +169,14 @@ class Cholesky final : public Factors {
     }
   }
 
-  /// Nested dissection of the blocks, kept together.  What is joined comes last, where its part of the factor costs little beside the rest.
-  void analyse(const BlockCsr& A, cholmod_sparse& F) {
+  /// Nested dissection of the blocks, kept together.  What is joined comes last, where its part of the factor costs little beside the rest,
+  /// or, where that is to be an LU, beside factors of the whole that are.
+  void analyse(const BlockCsr& A, cholmod_sparse& F, bool ends_with_joined = true) {
+    last_ = ends_with_joined ? joined_ : std::vector<int>();
+    place_.clear();
     const auto m = static_cast<double>(3 * last_.size()), n = static_cast<double>(F.nrow);
-    constexpr double share = 3, likely = 10;  // of the work, which is denser there; of cells in space it is about ten times n^2
-    constexpr double most = 2000;             // unknowns there: 100 MB
+    const double share = stiffened_ ? 3 : 0.5, likely = 10;  // of the work; of cells in space it is about ten times n^2
+    constexpr double most = 2000;                            // unknowns there: 100 MB
     if (m > most || m * m * m > 2 * share * likely * n * n) last_.clear();
     std::vector<char> is_last(flexible_.size(), 0);
     for (const int b : last_) is_last[b] = 1;
@@ -216,9 +224,8 @@ class Cholesky final : public Factors {
       for (size_t k = 0; k < 3 * last_.size(); ++k) place_[at[k]] = static_cast<int>(k);
       return;
     }
-    last_.clear();
     cholmod_free_factor(&L_, &common_);
-    analyse(A, F);
+    analyse(A, F, false);
   }
 
   bool factorize(cholmod_sparse& F) {
@@ -359,8 +366,9 @@ class Cholesky final : public Factors {
   Eigen::MatrixXd Z_;
   Eigen::VectorXd scale_, f_, g_, p_;
   Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
-  std::vector<int> last_, place_;                 // flexible blocks that are joined, and where in the end of the factor each unknown is
+  std::vector<int> joined_, last_, place_;        // flexible blocks; those at the end of the factor, and where there each unknown is
   Eigen::MatrixXd end_, end_schur_, end_factor_;  // of F there when factored; what the rest adds to it; its factor
+  bool tried_ = false;                            // to stiffen F where it was indefinite
   bool stiffened_ = false;                        // F was indefinite there: its factor is an LU
   Eigen::MatrixXf end_lu_;
   std::vector<int> pivots_;
