@@ -270,9 +270,7 @@ using StageOf = std::function<Stage(const Config&)>;
 /// under the loads to come.  `foreseen` receives the way; null: both loads are the same. Returns how.
 std::optional<Correction> take_along(System& system, KktSolver& solver, const StageOf& own, const StageOf& stage, const Config& before,
                                      Config& q, std::vector<double>& lambda, std::optional<Config>* foreseen) {
-  // of the way: the difference quotient is the tangent's columns of what is prescribed.  So little that nothing slides yet.
-  const double way = system.traits().slides ? system.largest_difference(before, q) : 0,
-               little = way > 0 ? std::min(1e-3, 1e-8 * system.length / way) : 1e-3;
+  constexpr double little = 1e-3;  // of the way: the difference quotient is the tangent's columns of what is prescribed
   Residual at;
   system.evaluate(own(before), lambda, at, &solver);
   if (foreseen) system.evaluate(stage(before), lambda, at, nullptr);

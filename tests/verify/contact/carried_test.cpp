@@ -19,12 +19,13 @@ constexpr double g = 9.81;
 Eigen::VectorXd last(const Results& r, const std::string& history) { return r.history(history).bottomRows(1).transpose(); }
 
 /// A plate that a law moves, what lies on it, and its place at the end.
-Results on_moved_plate(const Case& c, const std::string& motion, const std::string& on_it) {
+Results on_moved_plate(const Case& c, const std::string& motion, const std::string& on_it,
+                       const std::string& history = "{t = [0, 1], value = [0, 1]}") {
   std::ofstream(c / "scene.toml")
       << "gravity = [0, 0, -9.81]\n[[body]]\nname = \"plate\"\nmass = 1\ncom = [0, 0, 0]\ninertia = [1, 1, 1]\n"
          "[[obstacle]]\nkind = \"plane\"\nname = \"top\"\non = \"plate\"\n[[motion]]\nname = \"m\"\non = \"plate\"\n"
-         "history = {t = [0, 1], value = [0, 1]}\n" +
-             motion + "[[contact]]\nname = \"c\"\na = \"top\"\nb = \"it\"\nfriction = 0.5\nstiffness = 1e6\n" + on_it +
+         "history = " +
+             history + "\n" + motion + "[[contact]]\nname = \"c\"\na = \"top\"\nb = \"it\"\nfriction = 0.5\nstiffness = 1e6\n" + on_it +
              "[[probe]]\nname = \"p\"\non = \"b\"\n[time]\nanalysis = \"static\"\n";
   succeeded(c.run("hilo-solve --quiet scene.toml --set time.steps=10 -o run.h5"));
   return Results(c / "run.h5");
@@ -54,6 +55,27 @@ TEST(LoadSteps, ABoxGoesAlongWithWhatItLiesOn) {
     const Results r = on_moved_plate(c, moved(0.5), box(0, spring + fmt::format("stiffness = [{}, 0, 0]\n", k)));
     EXPECT_NEAR(last(r, "probe/p")[0], std::min(0.5, 9.81 / k), 1e-4) << k;
   }
+}
+
+// Truth: x follows the plate within mu N/k, where N grows with the load.  There and back: what slides one way slides the other.
+TEST(LoadSteps, ABoxOnASpringThatIsDraggedThereAndBack) {
+  const Case c("contact");
+  for (const double k : {20., 400., 1e4})
+    for (const double far : {0.02, 0.5, 3.}) {
+      const std::string box = fmt::format(
+          "[[body]]\nname = \"b\"\nmass = 2\ncom = [0, 0, 0.1]\ninertia = [0.02, 0.02, 0.02]\n"
+          "[[obstacle]]\nkind = \"box\"\nname = \"it\"\non = \"b\"\nat = [0, 0, 0.1]\nsize = [0.2, 0.2, 0.2]\n"
+          "[[spring]]\nkind = \"bushing\"\nname = \"s\"\nb = \"b\"\nat = [0, 0, 0.1]\nstiffness = [{}, 0, 0]\n",
+          k);
+      const Results r = on_moved_plate(c, fmt::format("kind = \"translation\"\ndisplacement = [{}, 0, 0]\n", far), box,
+                                       "{t = [0, 0.5, 1], value = [0, 1, 0]}");
+      double x = 0, before = 0;
+      for (int i = 1; i <= 10; ++i) {
+        const double t = 0.1 * i, plate = far * (t <= 0.5 ? 2 * t : 2 - 2 * t), most = 9.81 * t / k;
+        x = std::clamp(x + plate - before, -most, most), before = plate;
+      }
+      EXPECT_NEAR(last(r, "probe/p")[0], x, 2e-3 * std::abs(x) + 4e-5) << k << " " << far;
+    }
 }
 
 // Truth: balance of forces.  A ball in the edge or the corner of a container presses each wall, where the nearest one alone had all.
