@@ -246,7 +246,8 @@ int locked(const std::string& path, const std::string& name, int how) {
   if (file < 0) throw Error(name, fmt::format("cannot write: {}", std::strerror(errno)), "", Exit::resources);
   if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     ::close(file);
-    throw Error(name, "another program has it open", "wait until the run that writes it ends, close what reads it, or give another -o", Exit::resources);
+    throw Error(name, "another program has it open", "wait until the run that writes it ends, close what reads it, or give another -o",
+                Exit::resources);
   }
   return file;  // also where the file system knows no locks
 }

@@ -187,5 +187,8 @@ TEST_F(Stopped, ADamagedCheckpointIsPassedOverForTheOneBefore) {
 TEST_F(Stopped, TwoRunsDoNotWriteOneFile) {
   const auto o = work.run(in_background + "hilo-solve scene.toml --quiet --set time.end=1; code=$?; kill -TERM $p; wait $p; exit $code");
   EXPECT_EQ(o.exit, resources) << o.err;
-  EXPECT_NE(o.err.find("run.h5: another program has it open (wait until the run that writes it ends, close what reads it, or give another -o)"), o.err.npos) << o.err;
+  EXPECT_NE(
+      o.err.find("run.h5: another program has it open (wait until the run that writes it ends, close what reads it, or give another -o)"),
+      o.err.npos)
+      << o.err;
 }
