@@ -135,7 +135,7 @@ class StaticSteps final : public Steps {
     LoadStep step{state.t, at_.done};
     r = soft_.find(step, reached.t, next, options, reached.q, reached.lambda);
     const bool sharp = r.least_det.det > 0 && at_.step <= std::ldexp(1.0 / n_, -4);  // a sharp bend
-    // from rest what moves by a law jumps to its place, and friction takes along no further what it turns back
+    // steps from rest put what moves by a law in its place at once, so that friction drags nothing any more: shorter steps are tried first
     const bool shorter_first =
         at_.done > 0 && system.moves() && system.traits().slides && at_.step > std::ldexp(1.0 / n_, -std::min(3, run_.max_cuts));
     const bool from_rest = !r.converged && !shorter_first && (sharp || touching(system));

@@ -269,7 +269,7 @@ class Cholesky final : public Factors {
     const auto *super = static_cast<const int*>(L_->super), *pi = static_cast<const int*>(L_->pi), *rows = static_cast<const int*>(L_->s);
     const supernodal::DoubleValues values(L_);
     end_ = end_of(A), end_schur_.resize(0, 0);
-    const Eigen::VectorXd more = stiffness_of(end_);
+    const Eigen::VectorXd more = stiffened_ ? stiffness_of(end_) : Eigen::VectorXd();
     end_ = ((end_ + end_.transpose()) / 2).eval();
     if (stiffened_) end_.diagonal() += more;
     end_factor_.setZero(m, m);

@@ -437,42 +437,5 @@ TEST(LoadSteps, APressFitOfFacetsThatFaceEachOtherAskewIsTold) {
   }
 }
 
-/// A box of 2 kg on a plate that a law moves; friction 0.8.
-std::string carried(const std::string& motion, const std::string& more) {
-  return "gravity = [0, 0, -9.81]\nbody = [{name = \"belt\", mass = 1, com = [0, 0, 0], inertia = [1, 1, 1]}, "
-         "{name = \"b\", mass = 2, com = [0.5, 0, 0.1], inertia = [0.02, 0.02, 0.02]}]\n"
-         "obstacle = [{kind = \"plane\", name = \"t\", on = \"belt\"}, "
-         "{kind = \"box\", name = \"w\", on = \"b\", at = [0.5, 0, 0.1], size = [0.2, 0.2, 0.2]}]\n"
-         "contact = [{name = \"c\", a = \"t\", b = \"w\", friction = 0.8, stiffness = 1e6, restitution = 1}]\n"
-         "motion = [{name = \"m\", on = \"belt\", history = {t = [0, 1], value = [0, 1]}, " +
-         motion + "}]\n" + more;
-}
-
-// Truth: nothing where all sticks; mu N along the slip of a step that goes on from rest; mu N along the way of what slides.
-TEST(LoadSteps, FrictionTakesItsForceAlongTheSlip) {
-  const Case c("contact");
-  const double weight = 2 * g;
-  const auto solved = [&](const std::string& scene, int steps) {
-    std::ofstream(c / "scene.toml") << scene << "time = {analysis = \"static\", steps = " << steps << "}\n";
-    succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
-    return last(Results(c / "run.h5"), "contact/c");
-  };
-  const std::string tilted = carried("kind = \"rotation\", at = [0, 0, 0], axis = [0, 1, 0], angle = -0.4", "");
-  for (const int steps : {1, 2, 10}) {
-    const auto row = solved(tilted, steps);
-    EXPECT_LE(row[6], 0.8 * weight * row[5] * (1 + 1e-6)) << steps;
-    EXPECT_LT(row[5], 1e-4) << steps;
-    EXPECT_TRUE(steps == 1 || row[6] < 1e-9) << steps << " " << row[6];
-  }
-  const std::string pulled =
-      carried("kind = \"translation\", displacement = [0.1, 0, 0]",
-              "spring = [{kind = \"bushing\", name = \"s\", b = \"b\", at = [0.5, 0, 0], stiffness = [1e4, 1e4, 0]}]\n");
-  for (const int steps : {1, 10}) {
-    const auto row = solved(pulled, steps);
-    EXPECT_NEAR(row[5], 0.1 - 0.8 * weight / 1e4, 1e-4) << steps;
-    EXPECT_NEAR(row[6], 0.8 * weight * row[5] * (1 + 1. / steps) / 2, 1e-6) << steps;  // the weight grows with the steps
-  }
-}
-
 }  // namespace
 }  // namespace hilo::test::load_steps_test
