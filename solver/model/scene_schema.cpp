@@ -55,6 +55,8 @@ std::vector<KindSchema> make_schema() {
          "vibration modes of a linear region, at most; static ones are there besides. By default fewer where all could not stiffen",
          at_least(0)},
         {"up_to", number, "Hz", "", "vibration modes up to this frequency, but at least four; absent: 0.1 divided by the step", above(0)},
+        {"interface", texts, "", "[]",
+         "sets of facets of a linear region whose nodes have modes of their own: where contact or a load presses it in"},
         {"shapes", text, "", "",
          "CSV of the modes of a linear region, in place of those that hilo finds: node, then x, y, z of each shape [length]"},
         {"shell", boolean, "", "false", "its hex8 cells, in one or more layers, are solid-shells: thin plates and walls that do not lock"},

@@ -34,6 +34,32 @@ bool Builder::is_of(std::int64_t cell, int linear_body) const {
   return region.fidelity == Fidelity::linear && region.body == linear_body;
 }
 
+/// Nodes of the sets of facets that are to have modes of their own, as those that ties hold.  Collective.
+void Builder::add_interfaces(int body, RegionParcel& parcel) const {
+  const Mesh& mesh = mesh_->mesh;
+  for (const Region& region : regions_) {
+    if (region.fidelity != Fidelity::linear || region.body != body) continue;
+    if (!region.interface.empty() && !parcel.shapes.empty())
+      throw Error(region.interface_where, fmt::format("region \"{}\" has shapes of a file: no node has modes of its own", region.name),
+                  "leave shapes or interface out");
+    for (const std::string& name : region.interface) {
+      const auto set = mesh.facet_sets.find(name);
+      if (set == mesh.facet_sets.end())
+        throw Error(region.interface_where, fmt::format("no set of facets \"{}\"", name), suggest(name, mesh.all_names()));
+      std::vector<std::int64_t> rows;
+      for (const Facet& f : set->second)
+        if (is_of(f.cell, body))
+          for (const std::int64_t i : mesh.facet_nodes(f)) rows.push_back(mesh_->node_global[i]);
+      if (comm_.sum(static_cast<double>(rows.size())) == 0)
+        throw Error(region.interface_where, fmt::format("set \"{}\" has no facets of region \"{}\"", name, region.name));
+      rows = comm_.to_first(rows);
+      std::sort(rows.begin(), rows.end());
+      rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+      parcel.tied.emplace_back(fmt::format("set \"{}\"", name), std::move(rows));
+    }
+  }
+}
+
 /// Collective.
 RegionParcel Builder::parcel_of(int number) {
   const Mesh& mesh = mesh_->mesh;
@@ -90,6 +116,7 @@ RegionParcel Builder::parcel_of(int number) {
       auto& [name, its] = out.tied.emplace_back(group.name, std::vector<std::int64_t>());
       for (const int i : group.nodes) its.push_back(mesh_->node_global[i]);
     }
+  add_interfaces(body, out);
   std::vector<NodalForces> forces;
   for (const Loading* part : out_->all<Loading>()) part->add_reference_forces(forces);
   std::vector<std::int64_t> load_sizes;

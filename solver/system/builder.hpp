@@ -43,6 +43,8 @@ class Builder {
     double mass_wanted = 0, area = 0, beta = 0, alpha = 0;
     double modal_damping = 0, up_to = 0;  // of a linear one: ratio, Hz
     std::string shapes, shapes_where;     // file of its modes, where they are given
+    std::vector<std::string> interface;   // sets of facets whose nodes have modes of their own
+    std::string interface_where;
     int n_vibrations = 40;
     bool modes_given = false, stiffening = false, shell = false;
     std::string where, place, shell_where;  // of its material, of its entry, and of `shell`, for errors
@@ -81,6 +83,7 @@ class Builder {
   // build_reduction.cpp
   bool is_of(std::int64_t cell, int linear_body) const;
   RegionParcel parcel_of(int number);
+  void add_interfaces(int body, RegionParcel& parcel) const;
   ReductionInput reduction_input(const RegionParcel& parcel, const Body& axes) const;
   void set_wishes(ReductionInput& in, const RegionParcel& parcel, const Body& axes) const;
   Eigen::MatrixXd given_shapes(const RegionParcel& parcel) const;
