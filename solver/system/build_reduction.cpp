@@ -17,6 +17,7 @@
 #include "base/shell_shape.hpp"
 #include "linear/shared_cholesky.hpp"
 #include "system/builder.hpp"
+#include "system/contacts.hpp"
 #include "system/joints.hpp"
 #include "system/linear_regions.hpp"
 #include "system/region_parcel.hpp"
@@ -34,30 +35,68 @@ bool Builder::is_of(std::int64_t cell, int linear_body) const {
   return region.fidelity == Fidelity::linear && region.body == linear_body;
 }
 
-/// Nodes of the sets of facets that are to have modes of their own, as those that ties hold.  Collective.
+/// Nodes that have modes of their own, as those that ties hold: of the sets that the scene names, else of what contacts may touch.  Few: many
+/// would move by smooth functions, and do not give way where they are pressed in.  Collective.
 void Builder::add_interfaces(int body, RegionParcel& parcel) const {
   const Mesh& mesh = mesh_->mesh;
+  struct Mark {
+    std::int64_t list, row;
+  };
+  std::vector<Mark> marks;
+  std::vector<std::string> names;
+  const auto mark = [&](std::int64_t node) {
+    const bool of_block = !mesh.block.empty() && mesh.block[node] >= 0;
+    if (out_->follower[node] == body && !of_block) marks.push_back({std::ssize(names) - 1, mesh_->node_global[node]});
+  };
+  bool chosen = false;
   for (const Region& region : regions_) {
-    if (region.fidelity != Fidelity::linear || region.body != body) continue;
-    if (!region.interface.empty() && !parcel.shapes.empty())
-      throw Error(region.interface_where, fmt::format("region \"{}\" has shapes of a file: no node has modes of its own", region.name),
-                  "leave shapes or interface out");
-    for (const std::string& name : region.interface) {
+    if (region.fidelity != Fidelity::linear || region.body != body || !region.interface) continue;
+    chosen = true;
+    const Entry& e = *region.interface;
+    if (e.texts("interface") == std::vector<std::string>{"none"}) continue;
+    if (!parcel.shapes.empty())
+      e.refuse("interface", fmt::format("region \"{}\" has shapes of a file: no node has modes of its own", region.name),
+               "leave shapes or interface out");
+    for (const std::string& name : e.texts("interface")) {
       const auto set = mesh.facet_sets.find(name);
-      if (set == mesh.facet_sets.end())
-        throw Error(region.interface_where, fmt::format("no set of facets \"{}\"", name), suggest(name, mesh.all_names()));
-      std::vector<std::int64_t> rows;
+      if (set == mesh.facet_sets.end()) e.refuse("interface", fmt::format("no set of facets \"{}\"", name), suggest(name, mesh.all_names()));
+      names.push_back(fmt::format("set \"{}\"", name));
+      const size_t before = marks.size();
       for (const Facet& f : set->second)
         if (is_of(f.cell, body))
-          for (const std::int64_t i : mesh.facet_nodes(f)) rows.push_back(mesh_->node_global[i]);
-      if (comm_.sum(static_cast<double>(rows.size())) == 0)
-        throw Error(region.interface_where, fmt::format("set \"{}\" has no facets of region \"{}\"", name, region.name));
-      rows = comm_.to_first(rows);
-      std::sort(rows.begin(), rows.end());
-      rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-      parcel.tied.emplace_back(fmt::format("set \"{}\"", name), std::move(rows));
+          for (const std::int64_t i : mesh.facet_nodes(f)) mark(i);
+      if (comm_.sum(static_cast<double>(marks.size() - before)) == 0)
+        e.refuse("interface", fmt::format("set \"{}\" has no facets of region \"{}\"", name, region.name));
     }
   }
+  const Contacts& contacts = out_->part<Contacts>();
+  if (!chosen && parcel.shapes.empty()) {
+    for (const ContactPair& pair : contacts.list) {
+      names.push_back(fmt::format("contact \"{}\"", pair.name));
+      for (const ContactPoint& point : pair.points)
+        for (const int i : point.nodes) mark(i);
+    }
+    for (const SurfacePair& pair : contacts.surfaces) {
+      names.push_back(fmt::format("contact \"{}\"", pair.name));
+      for (const ContactSurface& side : pair.side)
+        for (const ContactSurface::Face& face : side.faces)
+          for (int a = 0; a < face.n; ++a) mark(face.node[a]);
+    }
+  }
+  std::set<std::int64_t> all;
+  std::vector<std::set<std::int64_t>> lists(names.size());
+  for (const Mark& m : comm_.to_first(marks)) {
+    all.insert(m.row), lists[static_cast<size_t>(m.list)].insert(m.row);
+  }
+  if (!chosen && (all.size() > most_free || parcel.stiffening)) {
+    if (!all.empty())
+      warn(parcel.where, fmt::format("linear region \"{}\": contacts may touch {} of its nodes, which move by its modes alone: it gives way too "
+                                     "little where it is pressed in (give the sets of facets that are touched as interface{})",
+                                     out_->bodies[body].name, all.size(), parcel.stiffening ? ", without stiffening" : ""));
+    return;
+  }
+  for (size_t k = 0; k < names.size(); ++k)
+    if (!lists[k].empty()) parcel.tied.emplace_back(names[k], std::vector(lists[k].begin(), lists[k].end()));
 }
 
 /// Collective.

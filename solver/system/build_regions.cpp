@@ -122,7 +122,7 @@ void Builder::read_regions() {
       if (e.given("modal_damping")) region.modal_damping = e.number("modal_damping");
       if (e.given("modes")) region.n_vibrations = static_cast<int>(e.number("modes")), region.modes_given = true;
       if (e.given("shapes")) region.shapes = e.text("shapes"), region.shapes_where = e.where("shapes");
-      if (e.given("interface")) region.interface = e.texts("interface"), region.interface_where = e.where("interface");
+      if (e.given("interface")) region.interface = &e;
       if (e.given("up_to")) region.up_to = e.number("up_to");
       if (e.given("shell")) region.shell = e.boolean("shell"), region.shell_where = e.where("shell");
       if (e.given("stiffening")) region.stiffening = e.boolean("stiffening");

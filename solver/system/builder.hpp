@@ -43,8 +43,7 @@ class Builder {
     double mass_wanted = 0, area = 0, beta = 0, alpha = 0;
     double modal_damping = 0, up_to = 0;  // of a linear one: ratio, Hz
     std::string shapes, shapes_where;     // file of its modes, where they are given
-    std::vector<std::string> interface;   // sets of facets whose nodes have modes of their own
-    std::string interface_where;
+    const Entry* interface = nullptr;     // that says which nodes have modes of their own
     int n_vibrations = 40;
     bool modes_given = false, stiffening = false, shell = false;
     std::string where, place, shell_where;  // of its material, of its entry, and of `shell`, for errors
