@@ -102,6 +102,19 @@ TEST_F(ImportInpSilent, GravityOfCellsIsTheirsAloneAndThatOfMassesAloneIsTold) {
   EXPECT_NEAR(foot(mass + "*DLOAD\nbar, GRAV, 10., 0., 0., -1.\ns, GRAV, 10., 0., 0., -1.\n" + end)[2], 10 * 2500, 1e-3);
 }
 
+// Truth: CalculiX: each component of a node is what the last line says that speaks of it.
+TEST_F(ImportInpSilent, InitialVelocitiesOfOverlappingSetsAreMergedByNode) {
+  solve(bar + "*NSET, NSET=all, GENERATE\n1, 12\n*INITIAL CONDITIONS, TYPE=VELOCITY\nhead, 3, .2\nall, 2, .1\n9, 3, .3\n12, 1, .5\n" +
+        "*STEP\n*DYNAMIC, DIRECT\n1e-6, 1e-6\n" + end);
+  const auto v = Store::open(place / "run.h5").read<double>("/field/000000/velocity");
+  ASSERT_EQ(v.size(), 36u);
+  for (size_t a = 0; a < 12; ++a) {
+    EXPECT_EQ(v[3 * a], a == 11 ? .5 : 0) << a;
+    EXPECT_EQ(v[3 * a + 1], .1) << a;
+    EXPECT_EQ(v[3 * a + 2], a < 8 ? 0 : a == 8 ? .3 : .2) << a;
+  }
+}
+
 TEST_F(ImportInpSilent, TheLastSectionOfACellIsItsOwn) {
   const std::string text = scene(bar + "*SOLID SECTION, ELSET=last, MATERIAL=soft\n" + held + statics + end);
   EXPECT_NE(text.find("material = \"soft\""), std::string::npos) << text;

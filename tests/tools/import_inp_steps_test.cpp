@@ -111,6 +111,61 @@ TEST_F(ImportInpSteps, WhatIsPulledAndLetGoSwingsFromWhereItWas) {
   EXPECT_LT(least, .1);
 }
 
+// What is there at once stays as it is, through its own step and those behind it.  Truth: forces by hand: 4 N, 2 N on 1 m^2, rho A L g,
+// E A u/L, and rho A omega^2 L^2/2; a moment of 3 N m about z.
+TEST_F(ImportInpSteps, WhatAStaticStepHasAtOnceIsConstant) {
+  const std::string at_once = "*STEP, AMPLITUDE=STEP\n*STATIC\n", body = "*NODE\n50, 2., .5, .5\n*RIGID BODY, NSET=head, REF NODE=50\n";
+  const struct {
+    std::string model, load;
+    int component;
+    double force, within;
+  } cases[] = {
+      {"", "*CLOAD\nhead, 1, 1.\n", 0, -4, 1e-5},
+      {"", "*DSLOAD\nend, P, -2.\n", 0, -2, 1e-5},
+      {"", "*DLOAD\nbar, GRAV, 9., 1., 0., 0.\n", 0, -18000, 1e-3},
+      {"", "*DLOAD\nbar, CENTRIF, 1., 0., .5, 0., 0., 0., 1.\n", 0, -2000, 1e-3},
+      {"", "*BOUNDARY\nhead, 1, 1, 1e-6\n", 0, -500, 1e-2},
+      {body, "*CLOAD\n50, 6, 3.\n", 5, -3, 1e-5},
+  };
+  for (const auto& c : cases)
+    for (const bool by_amplitude : {false, true}) {
+      SCOPED_TRACE(c.load);
+      std::string load = c.load;
+      if (by_amplitude) load.insert(load.find('\n'), ", OP=MOD, AMPLITUDE=one");
+      const std::string step = (by_amplitude ? statics : at_once) + load;
+      solve(bar + c.model + "*AMPLITUDE, NAME=one\n0., 1., 1., 1.\n" + step + end + (by_amplitude ? step : statics) + "*CLOAD\n5, 3, 1.\n" +
+                end,
+            "a.inp", "", "--set time.steps=4");
+      const auto t = read("/history/t"), force = read("/history/motion/foot");
+      ASSERT_GE(t.size(), 5u);
+      for (size_t i = 1; i < t.size(); ++i) EXPECT_NEAR(force[6 * i + static_cast<size_t>(c.component)], c.force, c.within) << t[i];
+      EXPECT_EQ(err.find("not read"), std::string::npos) << err;
+    }
+}
+
+// Truth: forces by hand: 4 N all the time, and 8 N that come and go.
+TEST_F(ImportInpSteps, WhatAStepHasAtOnceBesideAnAmplitudeIsConstant) {
+  solve(bar + "*AMPLITUDE, NAME=a\n0., 0., .5, 1., 1., 0.\n*STEP, AMPLITUDE=STEP\n*STATIC\n" +
+            "*CLOAD\nhead, 1, 1.\n*CLOAD, AMPLITUDE=a\nhead, 2, 2.\n" + end,
+        "a.inp", "", "--set time.steps=4");
+  EXPECT_EQ(foot({.25, .5, .75, 1}), (std::vector<double>{-4, -4, -4, -4}));
+}
+
+// Truth: 2 kg under F t: F t^3/(6 m).
+TEST_F(ImportInpSteps, AmplitudeRampOfADynamicStepGrows) {
+  solve(bar + "*NODE\n60, 5., 0., 0.\n*ELEMENT, TYPE=MASS, ELSET=p\n90, 60\n*MASS, ELSET=p\n2.\n*BOUNDARY\n60, 2, 3\n" +
+        "*STEP, AMPLITUDE=RAMP\n*DYNAMIC, DIRECT\n.01, 1.\n*CLOAD\n60, 1, 12.\n" + end);
+  const auto x = read("/history/body/node_60");
+  EXPECT_NEAR(x[x.size() - 12] - x[0], 1, 1e-4);
+}
+
+// Truth: CalculiX, whose first step ends before the load of the second is there.
+TEST_F(ImportInpSteps, WhatALaterStepHasAtOnceIsNotThereAtTheEndOfTheOneBefore) {
+  solve(bar + statics + "*CLOAD\nhead, 1, 1.\n" + end + "*STEP, AMPLITUDE=STEP\n*STATIC\n*CLOAD\nhead, 1, 3.\n" + end, "a.inp", "",
+        "--set time.steps=4");
+  EXPECT_EQ(foot({.5, 1, 1.5, 2}), (std::vector<double>{-2, -4, -12, -12}));
+}
+
 TEST_F(ImportInpSteps, WhatOneRunCannotSayIsToldAndTheStepsBeforeItStay) {
   const std::string pull = "*CLOAD\nhead, 1, 1.\n", side = "*CLOAD\nhead, 2, 1.\n";
   struct {

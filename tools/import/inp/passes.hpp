@@ -39,6 +39,9 @@ void find_motions(InpDeck& deck, Imported& in);
 /// static steps one behind the other, or what follows from their equilibrium, dynamic steps or modes.  Steps that this cannot say are
 /// named, with what is in them.
 void join_steps(InpDeck& deck, Imported& in);
+/// A line for each component.  Where lines, from that step on, speak of a component of a node (`vectors`: of a node) that others name
+/// otherwise, each node has its own.
+std::vector<InpNodal> apart(const InpDeck& deck, const std::vector<InpNodal>& lines, int from_step, bool vectors = false);
 /// What is left of a line without the components from `first` to `last`.
 std::vector<InpNodal> without(const InpNodal& line, int first, int last);
 

@@ -290,8 +290,9 @@ void InpScene::pressures() {
   }
 }
 
+/// A later [[initial]] has all three components of its nodes: where lines overlap, each node has one of all of them.
 void InpScene::velocities() {
-  for (const auto& g : nodal_groups(d_, d_.velocities, "*INITIAL CONDITIONS, TYPE=VELOCITY", false, turned_, in_))
+  for (const auto& g : nodal_groups(d_, apart(d_, d_.velocities, 0, true), "*INITIAL CONDITIONS, TYPE=VELOCITY", false, turned_, in_))
     scene_.add("initial", "", g.place,
                {{"on", std::vector{set_of(g.target, g.nodes, "velocity", false)}}, {"velocity", g.value * si("m/s")}});
 }

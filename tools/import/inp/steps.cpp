@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A load of a step stays in the next ones until it is given anew (OP=MOD) or all of its kind are (OP=NEW).  Without an amplitude it goes
-// in static steps from the value it had to its own, over the step, and has its own at once in dynamic ones [Abaqus, CalculiX].
+// in static steps from the value it had to its own, over the step, and has its own at once in dynamic ones [Abaqus, CalculiX], or where
+// *STEP says AMPLITUDE=STEP.  A load without a history grows from nothing in a static run: one that is there at once has a history of 1.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,6 +31,15 @@ struct Cannot {
   std::string why, place;
 };
 
+/// The key of a new amplitude.
+std::string amplitude_of(InpDeck& d, const Points& points) {
+  InpAmplitude a;
+  for (int i = 1; a.name.empty() || d.amplitudes.contains(upper(a.name)); ++i) a.name = i == 1 ? "steps" : fmt::format("steps_{}", i);
+  for (const auto& [t, x] : points) a.t.push_back(t), a.value.push_back(x);
+  d.amplitudes[upper(a.name)] = a;
+  return upper(a.name);
+}
+
 class Joiner {
  public:
   Joiner(InpDeck& d, size_t n) : d_(d), n_(n) {
@@ -52,36 +62,14 @@ class Joiner {
       p.direct = p.direct && s.direct;
     }
     p.steps = static_cast<int>(n_ - std::min(first_, n_));
-    d_.supports = joined(apart(d_.supports), &InpStep::new_supports, true);
-    d_.forces = joined(apart(d_.forces), &InpStep::new_forces, false);
+    d_.supports = joined(apart(d_, d_.supports, 2), &InpStep::new_supports, true);
+    d_.forces = joined(apart(d_, d_.forces, 2), &InpStep::new_forces, false);
     d_.distributed = joined(d_.distributed, &InpStep::new_distributed, false);
     return p;
   }
 
  private:
   static size_t index(int step) { return static_cast<size_t>(std::max(step, 1) - 1); }
-
-  /// A line for each component.  Later lines may speak of the nodes of other lines under another name: then each node has lines of its own.
-  std::vector<InpNodal> apart(const std::vector<InpNodal>& lines) const {
-    std::map<std::pair<std::int64_t, int>, std::set<std::pair<std::string, std::int64_t>>> names;  // of node and component
-    bool overlap = false;
-    for (const InpNodal& l : lines)
-      for (const auto node : numbers_in(d_.nset, l))
-        for (int k = l.first; k <= l.last; ++k) {
-          auto& said = names[{node, k}];
-          said.insert({l.target, l.target.empty() ? l.id : 0});
-          overlap = overlap || (said.size() > 1 && l.step > 1);
-        }
-    std::vector<InpNodal> out;
-    for (const InpNodal& l : lines)
-      for (const auto node : overlap ? numbers_in(d_.nset, l) : std::vector{l.id})
-        for (int k = l.first; k <= l.last; ++k) {
-          InpNodal& one = out.emplace_back(l);
-          one.first = one.last = k, one.id = node;
-          if (overlap) one.target.clear();
-        }
-    return out;
-  }
 
   /// What lines have in common that speak of the same.
   using Key = std::tuple<std::string, std::int64_t, int, std::array<double, 6>>;
@@ -158,8 +146,9 @@ class Joiner {
       const bool in_run = k >= first_;
       const bool has_amplitude = g.is && !g.amplitude.empty();
       if (in_run && !(k == 0 && (has_amplitude || !s.ramps))) put(t0, now);
-      // a run from equilibrium has what was there before at its start, and what is there at once behind a billionth of its first step
-      const double at_once = k == first_ && k > 0 ? t0 + 1e-9 * P : t0;
+      // a run from equilibrium has what was there before at its start, as a static step has at its end, and what is there at once behind a
+      // billionth of the step
+      const double at_once = k > 0 && (k == first_ || s.procedure == "*STATIC") ? t0 + 1e-9 * P : t0;
       if (has_amplitude) {
         const auto a = d_.amplitudes.find(g.amplitude);
         if (a != d_.amplitudes.end() && !a->second.slopes.empty())
@@ -182,18 +171,13 @@ class Joiner {
     }
     amplitude.clear(), value = now;
     const bool constant = std::ranges::all_of(points, [&](const auto& p) { return p.second == now; });
-    if (constant) return now != 0;
+    if (constant && (now == 0 || d_.steps[n_ - 1].procedure != "*STATIC")) return now != 0;
+    if (constant) points = {points.front(), points.back()};
     for (const auto& [t, x] : points)
       if (std::abs(x) > std::abs(value)) value = x;
     for (auto& [t, x] : points) x /= value;
     const auto [known, fresh] = courses_.try_emplace(points, "");
-    if (fresh) {
-      InpAmplitude a;
-      for (int i = 1; a.name.empty() || d_.amplitudes.contains(upper(a.name)); ++i) a.name = i == 1 ? "steps" : fmt::format("steps_{}", i);
-      for (const auto& [t, x] : points) a.t.push_back(t), a.value.push_back(x);
-      known->second = upper(a.name);
-      d_.amplitudes[known->second] = a;
-    }
+    if (fresh) known->second = amplitude_of(d_, points);
     amplitude = known->second;
     return true;
   }
@@ -232,6 +216,47 @@ size_t longest(const InpDeck& d, std::string& why) {
 
 }  // namespace
 
+std::vector<InpNodal> apart(const InpDeck& d, const std::vector<InpNodal>& lines, int from_step, bool vectors) {
+  std::map<std::pair<std::int64_t, int>, std::set<std::pair<std::string, std::int64_t>>> names;  // of node and component
+  bool overlap = false;
+  for (const InpNodal& l : lines)
+    for (const auto node : numbers_in(d.nset, l))
+      for (int k = l.first; k <= l.last; ++k) {
+        auto& said = names[{node, vectors ? 0 : k}];
+        said.insert({l.target, l.target.empty() ? l.id : 0});
+        overlap = overlap || (said.size() > 1 && l.step >= from_step);
+      }
+  std::vector<InpNodal> out;
+  for (const InpNodal& l : lines)
+    for (const auto node : overlap ? numbers_in(d.nset, l) : std::vector{l.id})
+      for (int k = l.first; k <= l.last; ++k) {
+        InpNodal& one = out.emplace_back(l);
+        one.first = one.last = k, one.id = node;
+        if (overlap) one.target.clear();
+      }
+  return out;
+}
+
+/// What AMPLITUDE of the only *STEP says of lines without an amplitude.  In a static one all are there at once, which needs a history only
+/// beside lines with an amplitude: else one ramp of all of them ends where they do.
+static void say_amplitude_of_step(InpDeck& d) {
+  const InpStep& s = d.steps[0];
+  bool any = false;
+  const auto each = [&](const auto& does) {
+    for (auto* lines : {&d.supports, &d.forces}) std::ranges::for_each(*lines, does);
+    std::ranges::for_each(d.distributed, does);
+  };
+  each([&](const auto& l) { any = any || (!l.amplitude.empty() && l.value != 0); });
+  const bool at_once = s.procedure == "*STATIC" && !s.ramps && any, grows = s.procedure == "*DYNAMIC" && s.ramps;
+  if (!at_once && !grows) return;
+  std::string name;
+  each([&](auto& l) {
+    if (!l.amplitude.empty() || l.value == 0) return;
+    if (name.empty()) name = amplitude_of(d, {{0, at_once ? 1 : 0}, {s.period(), 1}});
+    l.amplitude = name;
+  });
+}
+
 std::vector<InpNodal> without(const InpNodal& line, int first, int last) {
   std::vector<InpNodal> parts{line, line};
   parts[0].last = std::min(line.last, first - 1), parts[1].first = std::max(line.first, last + 1);
@@ -249,6 +274,7 @@ void join_steps(InpDeck& d, Imported& in) {
       std::erase_if(d.supports, [](const InpNodal& l) { return l.step > 1; });
       std::erase_if(d.forces, [](const InpNodal& l) { return l.step > 1; });
       std::erase_if(d.distributed, [](const InpDistributed& l) { return l.step > 1; });
+      say_amplitude_of_step(d);
       break;
     }
     const auto kept = std::tuple{d.supports, d.forces, d.distributed, d.amplitudes};
