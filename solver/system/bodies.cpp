@@ -133,7 +133,7 @@ void Bodies::add_taken(std::span<const int> group, const Stage& s, std::span<con
 void Bodies::add_energy(const Config& q, const Config& v, Energy& sum) const {
   for (size_t b = 0; b < points_.bodies.size(); ++b) {
     const Body& body = points_.bodies[b];
-    if (!points_.counts(static_cast<int>(b)) || body.linear || body.mass == 0) continue;
+    if (!points_.counts(static_cast<int>(b)) || body.linear || (body.mass == 0 && body.J.isZero(0))) continue;
     sum.kinetic += body.inertia(v.c[b], v.R[b], v.c[b], v.R[b]) / 2;
     sum.momentum += body.mass * v.c[b];
     sum.angular += body.mass * q.c[b].cross(v.c[b]);

@@ -95,11 +95,24 @@ TEST_F(ImportInpSilent, ASpringAMassOrADamperIsTheFirstNumberOfItsLine) {
       bar + "*ELEMENT, TYPE=SPRINGA, ELSET=s\n900, 9, 100\n*SPRING, ELSET=s\n\n1.E4, , 293.\n2.E4, , 400.\n" + held + statics + end);
 }
 
-TEST_F(ImportInpSilent, GravityOfCellsIsTheirsAloneAndThatOfMassesAloneIsTold) {
+TEST_F(ImportInpSilent, GravityAndCentrifugalForcesOfMassesAreThoseOfTheirSets) {
   const std::string mass = bar + "*ELEMENT, TYPE=MASS, ELSET=s\n900, 12\n*MASS, ELSET=s\n500.\n" + held + statics;
   EXPECT_NEAR(foot(mass + "*DLOAD\nbar, GRAV, 10., 0., 0., -1.\n" + end)[2], 10 * 2000, 1e-3);
-  expect_told("*DLOAD GRAV on a part of the model, of masses and beams", mass + "*DLOAD\ns, GRAV, 10., 0., 0., -1.\n" + end);
+  EXPECT_NEAR(foot(mass + "*DLOAD\ns, GRAV, 10., 0., 0., -1.\n" + end)[2], 10 * 500, 1e-3);
   EXPECT_NEAR(foot(mass + "*DLOAD\nbar, GRAV, 10., 0., 0., -1.\ns, GRAV, 10., 0., 0., -1.\n" + end)[2], 10 * 2500, 1e-3);
+  // 9/s^2 about z: the bar's rho A L^2/2 and, at (2, 0) and as a body at (3, 0), 500 kg
+  for (const auto& [node, x] : {std::pair{"12", 2.}, {"100", 3.}}) {
+    SCOPED_TRACE(node);
+    std::string text = mass;
+    text.replace(text.find("900, 12"), 7, std::string("900, ") + node);
+    if (x == 3) text.insert(text.find("*BOUNDARY"), "*RIGID BODY, NSET=head, REF NODE=100\n");
+    const auto spun = [&](const std::string& set) {
+      return foot(text + "*DLOAD\n" + set + ", CENTRIF, 9., 0., 0., 0., 0., 0., 2.\n" + end);
+    };
+    for (const char* set : {"s", "900"}) EXPECT_NEAR(spun(set)[0], -9 * 500 * x, 1e-3) << set;
+    text.insert(text.find("*BOUNDARY"), "*ELSET, ELSET=all\nbar, s\n");
+    EXPECT_NEAR(spun("all")[0], -9 * (500 * x + 2000), 1e-2);
+  }
 }
 
 // Truth: CalculiX: each component of a node is what the last line says that speaks of it.

@@ -89,6 +89,71 @@ TEST_F(ImportInpTies, SpringsBetweenOneComponentOfTwoNodesToo) {
   expect_said("not read: *SPRING of SPRING2, but along one component of both nodes");
 }
 
+/// The bar as a rigid body whose turns are the displacements of node 102.
+const std::string turning = bar + "*NSET, NSET=all, GENERATE\n1, 20\n*RIGID BODY, NSET=all, REF NODE=100, ROT NODE=102\n";
+
+// Truth: F/k along and M/k about each axis, as in CalculiX.
+TEST_F(ImportInpTies, SpringsOnARotNodeTurnItsBody) {
+  std::string springs;
+  for (int k = 0; k < 6; ++k)
+    springs += fmt::format("*ELEMENT, TYPE=SPRING1, ELSET=s{0}\n{1}, {2}\n*SPRING, ELSET=s{0}\n{3}\n{4}e5\n", k, 50 + k, k < 3 ? 100 : 102,
+                           k % 3 + 1, k + 1);
+  run(turning + springs + statics + "*CLOAD\n100, 1, 10.\n100, 2, -20.\n100, 3, 30.\n102, 1, 4.\n102, 2, -5.\n102, 3, 6.\n*END STEP\n");
+  const auto u = Store::open(place / "run.h5").read<double>("/history/body/node_100");
+  const double *first = u.data(), *end = u.data() + u.size() - 12;  // centre, and the ends of three directors
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(end[k] - first[k], (k == 1 ? -1 : 1) * 1e-4, 1e-12);
+  EXPECT_NEAR(end[8] - end[2] - (first[8] - first[2]), 1e-5, 1e-9);
+  EXPECT_NEAR(end[5] - end[2] - (first[5] - first[2]), 1e-5, 1e-9);  // about -y
+  EXPECT_NEAR(end[4] - end[1] - (first[4] - first[1]), 1e-5, 1e-9);
+}
+
+/// A mass of 1 kg in a rigid body whose turns are the displacements of node 202, beside the bar.
+const std::string lone =
+    "*NODE\n200, 9., 0., 0.\n201, 9., 0., 0.\n202, 9., 0., 0.\n*ELEMENT, TYPE=MASS, ELSET=q\n60, 200\n*MASS, ELSET=q\n1.\n"
+    "*NSET, NSET=free\n200\n*RIGID BODY, NSET=free, REF NODE=201, ROT NODE=202\n*BOUNDARY\n201, 1, 3\n";
+
+// Truth: sqrt(k/J)/(2 pi), with J of the bar, 4000 kg ((4^2 + 1)/12 + 3^2 + 1.5^2) m^2, and 1e5 kg m^2 of a *MASS; and under a constant
+// moment M the turn M/c (t - J/c (1 - exp(-c t/J))).
+TEST_F(ImportInpTies, MassesAndDampersOnARotNodeTurnItsBody) {
+  const double J = 1e5, with_bar = 4000 * (17 / 12. + 11.25) + J, c = 3e5;
+  const auto mass = [](int node) {
+    return fmt::format("*ELEMENT, TYPE=MASS, ELSET=p\n50, {0}\n*MASS, ELSET=p\n1e5\n*BOUNDARY\n{0}, 1, 2\n", node);
+  };
+  run(turning + mass(102) +
+      "100, 1, 3\n*ELEMENT, TYPE=SPRING1, ELSET=s\n51, 102\n*SPRING, ELSET=s\n3\n8e6\n*STEP\n*FREQUENCY\n1\n*END STEP\n");
+  EXPECT_NEAR(Store::open(place / "run.h5").read<double>("/history/mode").at(10), std::sqrt(8e6 / with_bar) / (2 * std::numbers::pi), 1e-6);
+  run(bar + lone + mass(202) + "foot, 1, 3\n*ELEMENT, TYPE=DASHPOT1, ELSET=s\n51, 202\n*DASHPOT, ELSET=s\n3\n3e5\n" +
+      "*STEP\n*DYNAMIC, DIRECT\n.01, 1.\n*CLOAD\n202, 3, 100.\n*END STEP\n");
+  const auto u = Store::open(place / "run.h5").read<double>("/history/body/node_201");
+  const size_t n = u.size() - 12;
+  EXPECT_NEAR(u[n + 4] - u[n + 1] - (u[4] - u[1]), 100 / c * (1 - J / c * (1 - std::exp(-c / J))), 1e-7);
+}
+
+// Truth: M/k of a spring between the turns of two bodies, of which one is held.
+TEST_F(ImportInpTies, ASpringBetweenTwoRotNodesTurnsOneAgainstTheOther) {
+  run(turning + lone +
+      "202, 1\n202, 3\n100, 1, 3\n102, 1, 3\n*ELEMENT, TYPE=SPRING2, ELSET=s\n51, 202, 102\n*SPRING, ELSET=s\n2, 2\n4e5\n" + statics +
+      "*CLOAD\n202, 2, 4.\n*END STEP\n");
+  const auto u = Store::open(place / "run.h5").read<double>("/history/body/node_201");
+  const size_t n = u.size() - 12;
+  EXPECT_NEAR(u[n + 5] - u[n + 2] - (u[5] - u[2]), -1e-5, 1e-10);
+}
+
+TEST_F(ImportInpTies, WhatARotNodeCannotHaveIsTold) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"*ELEMENT, TYPE=SPRING2, ELSET=s\n50, 102, 101\n*SPRING, ELSET=s\n2, 2\n1e5\n",
+       "*SPRING of SPRING2 on a ROT NODE, but linear and along one of its components 1 to 3, the same of two such nodes"},
+      {"*ELEMENT, TYPE=SPRING1, ELSET=s\n50, 102\n*SPRING, ELSET=s, NONLINEAR\n2\n0., 0.\n1., 1.\n", "*SPRING of SPRING1 on a ROT NODE"},
+      {"*ELEMENT, TYPE=DASHPOTA, ELSET=s\n50, 102, 1\n*DASHPOT, ELSET=s\n\n1e5\n", "*DASHPOT of DASHPOTA on a ROT NODE"},
+      {"*ELEMENT, TYPE=MASS, ELSET=s\n50, 102\n*MASS, ELSET=s\n3.\n*STEP\n*STATIC\n*DLOAD\n50, GRAV, 9., 0., 0., 1.\n",
+       "*DLOAD GRAV or CENTRIF on a MASS of a ROT NODE"},
+  };
+  for (const auto& [text, told] : cases) {
+    imported_deck("a.inp", turning + text, "--scene-out s.toml");
+    expect_said("not read: " + told);
+  }
+}
+
 TEST_F(ImportInpTies, AMassOnASpringHasTheFrequencyOfTheClosedForm) {
   run(bar +
       "*NSET, NSET=all, GENERATE\n1, 20\n*ELEMENT, TYPE=MASS, ELSET=p\n50, 101\n*MASS, ELSET=p\n2.\n*ELEMENT, TYPE=SPRING1, ELSET=s\n51, "

@@ -293,7 +293,7 @@ std::vector<std::int64_t> inp_nodes(const InpDeck& d, const InpTarget& t) {
 
 std::vector<std::int64_t> inp_cells(const InpDeck& d, const InpTarget& t) {
   Rows rows;
-  if (t.target.empty() && !d.beams.contains(t.id) && !d.cell.contains(t.id)) throw Error(t.place, fmt::format("no element {}", t.id));
+  if (t.target.empty() && !d.has_element(t.id)) throw Error(t.place, fmt::format("no element {}", t.id));
   for (const auto i : t.target.empty() ? Rows{t.id} : set_of(d.elset, t, "element", false).members)
     if (const auto c = d.cell.find(i); c != d.cell.end()) rows.push_back(c->second);
   sort_unique(rows);

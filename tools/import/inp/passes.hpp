@@ -76,6 +76,8 @@ void find_ties(InpDeck& deck, Imported& in, const std::map<std::string, std::str
 bool is_tied(const InpDeck& deck, std::int64_t id);
 /// Calls `use(node, first, last)` for the tied nodes that a line speaks of, with degrees of freedom from 1 to 6.
 void tied_lines(const InpDeck& deck, const InpNodal& line, const std::function<void(std::int64_t, int, int)>& use);
+/// Of the elements that have one, by number.
+std::map<std::int64_t, double> masses_of(const InpDeck& deck);
 /// Of the model, 1 where it has none: for points beside others.
 double size_of(const InpDeck& deck, const Mesh& mesh);
 std::string body_name(const InpDeck& d, std::int64_t id);

@@ -16,6 +16,7 @@ InpScene::InpScene(const InpDeck& d, Imported& in, SetNames& names, const std::m
     for (const auto id : numbers_in(d.nset, t)) own_axes_.insert(id);
   for (const auto& [turns, reference] : d.turns_of)
     if (own_axes_.contains(turns)) own_axes_.insert(reference);
+  masses_ = masses_of(d);
   for (const auto& [id, b] : d.beams) of_beams_.insert(b.nodes.begin(), b.nodes.end());
   for (std::int64_t c = 0; c < in.mesh.n_cells() && in.sheets; ++c)
     if (info(in.mesh.shape[c]).dimension != 2) of_solids_.insert(in.mesh.cell(c).begin(), in.mesh.cell(c).end());

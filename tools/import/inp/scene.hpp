@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scene lines of an .inp deck, in the making: what its parts (supports, loads) share.
 #pragma once
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -51,6 +52,9 @@ class InpScene {
   void gravity();
   void centrifugal();
   void load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, std::initializer_list<SceneKey> keys);
+  bool turns(std::int64_t mass) const;
+  void tell_turns(const InpDistributed& p);
+  void load_of_points(const InpDistributed& p, const std::function<Vec3(const Vec3&)>& acceleration);
   void forces();
   std::map<size_t, Rows> by_number_of_nodes(const Rows& nodes);
   std::string end_of(std::int64_t row, const std::string& wish);
@@ -71,13 +75,14 @@ class InpScene {
   SetNames& names_;
   const std::map<std::string, std::string>&node_set_, &surface_;
   const ImportOptions& o_;
-  std::set<std::int64_t> own_axes_;   // the same by number, nodes of no cell too
-  std::vector<int> turned_;           // *TRANSFORM of each node, or -1
-  std::set<std::int64_t> of_solids_;  // rows, beside shells that become pairs
-  std::set<std::int64_t> of_beams_;   // numbers of nodes
-  std::set<std::string> wanted_;      // amplitudes that a load or motion is scaled by
-  std::vector<std::int64_t> a_cell_;  // a solid one of each node, or -1; empty until asked for
-  std::map<std::string, int> made_;   // sets made of single nodes or elements
+  std::set<std::int64_t> own_axes_;        // the same by number, nodes of no cell too
+  std::vector<int> turned_;                // *TRANSFORM of each node, or -1
+  std::set<std::int64_t> of_solids_;       // rows, beside shells that become pairs
+  std::set<std::int64_t> of_beams_;        // numbers of nodes
+  std::map<std::int64_t, double> masses_;  // by element
+  std::set<std::string> wanted_;           // amplitudes that a load or motion is scaled by
+  std::vector<std::int64_t> a_cell_;       // a solid one of each node, or -1; empty until asked for
+  std::map<std::string, int> made_;        // sets made of single nodes or elements
   SceneWriter scene_;
   SceneValue gravity_;
 };

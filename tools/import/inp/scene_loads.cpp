@@ -15,12 +15,13 @@ namespace hilo {
 void InpScene::gravity() {
   std::vector<Vec3> g(in_.mesh.shape.size(), Vec3::Zero());
   std::map<std::int64_t, Vec3> beside;  // what has mass without being a cell, by element
-  for (const auto& [id, point] : d_.points)
-    if (point.type == "MASS") beside[id] = Vec3::Zero();
+  for (const auto& [id, mass] : masses_)
+    if (!turns(id)) beside[id] = Vec3::Zero();
   for (const auto& [id, beam] : d_.beams) beside[id] = Vec3::Zero();
   bool any = false, in_time = false;
   for (const auto& p : d_.distributed) {
     if (p.face != -1) continue;
+    tell_turns(p);
     any = true, in_time = in_time || !p.amplitude.empty();
     const Vec3 more = p.value * p.direction;
     if (!p.target.empty() || !beside.contains(p.id))
@@ -38,8 +39,9 @@ void InpScene::gravity() {
   // what weighs in parts, or by a history, takes a load for each
   for (const auto& p : d_.distributed) {
     if (p.face != -1) continue;
-    if (const auto ids = numbers_in(d_.elset, p); std::ranges::any_of(ids, [&](std::int64_t id) { return beside.contains(id); }))
-      in_.skip("*DLOAD GRAV on a part of the model, of masses and beams", p.place);
+    if (const auto ids = numbers_in(d_.elset, p); std::ranges::any_of(ids, [&](std::int64_t id) { return d_.beams.contains(id); }))
+      in_.skip("*DLOAD GRAV on a part of the model, of beams", p.place);
+    load_of_points(p, [&](const Vec3&) -> Vec3 { return p.value * p.direction; });
     if (n_cells > 0) load_of_mass(p, "acceleration", "gravity", {{"acceleration", p.value * p.direction * si("m/s^2")}});
   }
 }
@@ -49,7 +51,43 @@ void InpScene::centrifugal() {
     if (p.face != -2 || p.value == 0) continue;
     if (const auto ids = numbers_in(d_.elset, p); std::ranges::any_of(ids, [&](std::int64_t id) { return d_.beams.contains(id); }))
       in_.skip("*DLOAD CENTRIF on beams", p.place);
+    tell_turns(p);
     load_of_mass(p, "centrifugal", "centrifugal", {{"at", point(p.at)}, {"axis", p.direction}, {"speed", std::sqrt(p.value) / si("s")}});
+    load_of_points(p, [&](const Vec3& x) -> Vec3 {
+      const Vec3 arm = x - p.at;
+      return o_.scale * p.value * (arm - p.direction * p.direction.dot(arm));
+    });
+  }
+}
+
+/// A mass on a ROT NODE is an inertia, which has no weight.
+bool InpScene::turns(std::int64_t mass) const { return d_.turns_of.contains(d_.points.at(mass).nodes[0]); }
+void InpScene::tell_turns(const InpDistributed& p) {
+  const auto ids = numbers_in(d_.elset, p);
+  if (std::ranges::any_of(ids, [&](std::int64_t id) { return masses_.contains(id) && turns(id); }))
+    in_.skip("*DLOAD GRAV or CENTRIF on a MASS of a ROT NODE", p.place);
+}
+
+/// On the masses among its elements: forces at their nodes, which such accelerations of theirs are.
+void InpScene::load_of_points(const InpDistributed& p, const std::function<Vec3(const Vec3&)>& acceleration) {
+  for (const auto id : numbers_in(d_.elset, p)) {
+    const auto mass = masses_.find(id);
+    if (mass == masses_.end() || turns(id)) continue;
+    const auto node = d_.points.at(id).nodes[0];
+    const Vec3 F = mass->second * acceleration(*point_of(d_, in_.mesh, node)) * si("N");
+    const auto past = F.norm() == 0 ? std::nullopt : history(p.amplitude, "*DLOAD", p.place);
+    if (!past || (!d_.bodies.contains(node) && !d_.node.contains(node))) continue;
+    if (d_.bodies.contains(node)) {
+      const std::string name = body_name(d_, node);
+      scene_.add_unique({"load", "force"}, name, p.place,
+                        {{"on", name}, {"force", F}, {"at", point(d_.bodies.at(node).X)}, {"history", *past}});
+      continue;
+    }
+    const Rows row{d_.node.at(node)};
+    const std::string set = set_of("", row, "force", true);
+    scene_.add_unique(
+        {"load", "force"}, set, p.place,
+        {{"on", set}, {"force", F / static_cast<double>(by_number_of_nodes(row).begin()->first)}, {"per_node", true}, {"history", *past}});
   }
 }
 

@@ -160,9 +160,13 @@ void find_tie(InpDeck& d, Imported& in, const InpTie& t, std::map<std::int64_t, 
 
 void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string>& surface) {
   std::int64_t own = 0;  // numbers below zero are reference nodes that the deck does not have
+  std::set<std::int64_t> turns;
+  for (const InpTie& t : d.ties)
+    if (!t.left_out && (!t.turns.target.empty() || t.turns.id)) turns.insert(node_of(d, t.turns));
   for (const auto& [id, p] : d.points)
     for (const auto n : p.nodes)
-      if (p.type != "DCOUP3D" && !d.node.contains(n)) d.bodies.try_emplace(n, InpBody{place_of(d, n, p.place), p.place, {}});
+      if (p.type != "DCOUP3D" && !d.node.contains(n) && !turns.contains(n))
+        d.bodies.try_emplace(n, InpBody{place_of(d, n, p.place), p.place, {}});
   for (const InpTie& t : d.ties) {
     if (t.left_out) continue;
     const auto w = members(d, t, in.mesh, surface);
@@ -195,6 +199,13 @@ std::string body_name(const InpDeck& d, std::int64_t id) {
   return free_body_name(d, name);
 }
 
+static const std::vector<std::int64_t>& elements_of(const InpDeck& d, const InpPointValue& v) {
+  auto set = d.elset.find(v.elset);
+  if (set == d.elset.end()) set = d.elset.find(unqualified(v.elset));
+  if (set == d.elset.end()) throw Error(v.place, fmt::format("{}: no element set \"{}\"", v.name, v.elset), suggest_name(v.elset, d.elset));
+  return set->second.members;
+}
+
 double size_of(const InpDeck& d, const Mesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Vec3& x : mesh.X) box.extend(x);
@@ -202,6 +213,22 @@ double size_of(const InpDeck& d, const Mesh& mesh) {
   const double size = box.isEmpty() ? 0 : box.diagonal().norm();
   return size > 0 ? size : 1;
 }
+
+std::map<std::int64_t, double> masses_of(const InpDeck& d) {
+  std::map<std::int64_t, double> out;
+  for (const InpPointValue& v : d.point_values)
+    if (v.name == "*MASS" && v.first.size() == 1 && v.first[0] > 0)
+      for (const auto id : elements_of(d, v))
+        if (const auto p = d.points.find(id); p != d.points.end() && p->second.type == "MASS") out[id] = v.first[0];
+  return out;
+}
+
+/// Springs and dampers that turn a body about the model's axes, by the displacements of its ROT NODE.
+struct Turning {
+  Vec3 stiffness = Vec3::Zero(), damping = Vec3::Zero();
+  Vec3 at = Vec3::Zero();
+  std::string name, place;
+};
 
 void write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOptions& o, SceneWriter& scene) {
   const auto X = [&](std::int64_t id) { return *point_of(d, in.mesh, id); };
@@ -215,10 +242,24 @@ void write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOpt
   std::set<std::int64_t> own_axes;
   for (const InpTransform& t : d.transformed)
     for (const auto id : numbers_of(d, t)) own_axes.insert(id);
-  std::map<std::int64_t, double> mass;
+  std::map<std::int64_t, double> mass, inertia;
+  std::map<std::pair<std::string, std::string>, Turning> turning;  // of what turns against the other, "" the ground
   SceneWriter springs;
   const double size = size_of(d, in.mesh);
   std::set<std::int64_t> valued;
+  const auto turn = [&](const InpPointValue& v, const InpPoint& p) {
+    const bool two = p.nodes.size() == 2;
+    const double dof = v.first[0];
+    if (p.type.ends_with('A') || v.table || v.first.size() != 2 || !(dof == 1 || dof == 2 || dof == 3) ||
+        (two && (v.second[0] != dof || !d.turns_of.contains(p.nodes[0]) || !d.turns_of.contains(p.nodes[1]))))
+      return in.skip(fmt::format("{} of {} on a ROT NODE, but linear and along one of its components 1 to 3{}", v.name, p.type,
+                                 two ? ", the same of two such nodes" : ""),
+                     v.place);
+    const std::int64_t body = d.turns_of.at(p.nodes[0]);
+    Turning& t = turning[{two ? body_name(d, d.turns_of.at(p.nodes[1])) : "", body_name(d, body)}];
+    (v.name == "*SPRING" ? t.stiffness : t.damping)[static_cast<Eigen::Index>(dof) - 1] += v.first[1];
+    if (t.place.empty()) t.name = fmt::format("{}_{}", p.type, p.id), t.place = p.place, t.at = o.point(d.bodies.at(body).X);
+  };
   const auto give = [&](const InpPointValue& v, std::int64_t id) {
     const auto p = d.points.find(id);
     if (p == d.points.end() || v.first.empty()) return;
@@ -233,28 +274,29 @@ void write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOpt
               v.place);
     if (!v.table && value < 0) return in.skip(v.name + " below zero", v.place);
     if (type == "MASS" && v.first.size() > 1) return in.skip(v.name + " of several values", v.place);
-    if (type == "MASS") return void(mass[p->second.nodes[0]] += value);
+    const auto& nodes = p->second.nodes;
+    const auto turned = [&](std::int64_t n) { return d.turns_of.contains(n); };
+    if (!std::ranges::all_of(nodes, [&](auto n) { return d.node.contains(n) || d.bodies.contains(n) || turned(n); }))
+      return in.skip(v.name + " on a ROT NODE of which nothing is made", v.place);
+    if (type == "MASS") return void((turned(nodes[0]) ? inertia[d.turns_of.at(nodes[0])] : mass[nodes[0]]) += value);
     if (!type.ends_with('A') && std::ranges::any_of(p->second.nodes, [&](auto n) { return own_axes.contains(n); }))
       return in.skip(v.name + " in axes of *TRANSFORM", v.place);
+    if (std::ranges::any_of(nodes, turned)) return turn(v, p->second);
     InpPointSpring spring{p->second, v, {}};
     for (const auto node : p->second.nodes) spring.ends.push_back({"", X(node), d.bodies.contains(node)});
     if (const std::string why = why_no_spring(spring); !why.empty()) return in.skip(why, v.place);
     for (size_t k = 0; k < spring.ends.size(); ++k) spring.ends[k].name = end_name(p->second.nodes[k]);
     write_point_spring(d, size, spring, o, springs);
   };
-  for (const InpPointValue& v : d.point_values) {
-    auto set = d.elset.find(v.elset);
-    if (set == d.elset.end()) set = d.elset.find(unqualified(v.elset));
-    if (set == d.elset.end())
-      throw Error(v.place, fmt::format("{}: no element set \"{}\"", v.name, v.elset), suggest_name(v.elset, d.elset));
-    for (const auto id : set->second.members) give(v, id);
-  }
+  for (const InpPointValue& v : d.point_values)
+    for (const auto id : elements_of(d, v)) give(v, id);
   for (const auto& [id, p] : d.points)
     if (!valued.contains(id) && !(p.type == "DCOUP3D" && d.means.contains(p.nodes[0])))
       in.skip("*ELEMENT, TYPE=" + p.type + " without a value", p.place);
 
   for (const auto& [id, b] : d.bodies) {
-    scene.add("body", body_name(d, id), b.place, {{"mass", mass[id] * o.si("kg")}, {"com", o.point(b.X)}});
+    SceneTable& body = scene.add("body", body_name(d, id), b.place, {{"mass", mass[id] * o.si("kg")}, {"com", o.point(b.X)}});
+    if (const double J = inertia[id] * o.si("kg m^2"); J > 0) body.set("inertia", {J, J, J});
     mass.erase(id);
   }
   for (const auto& [id, m] : mass)
@@ -284,6 +326,12 @@ void write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOpt
       const std::string as = scene.unique("joint", body);
       scene.add({"joint", "fixed"}, as, c.place, {{"a", body}, {"b", names.nodes(as + "_tied", c.rows)}, {"at", o.point(b.X)}});
     }
+  for (const auto& [ends, t] : turning)
+    scene
+        .add({"spring", "bushing"}, t.name, t.place,
+             {{"a", ends.first}, {"b", ends.second}, {"at", t.at}, {"axis", Vec3(Vec3::UnitZ())}, {"x", Vec3(Vec3::UnitX())}})
+        .set_if(t.stiffness.norm() > 0, "angular_stiffness", t.stiffness * o.si("N m/rad"))
+        .set_if(t.damping.norm() > 0, "angular_damping", t.damping * o.si("N m s/rad"));
   scene.append(springs);
 }
 
