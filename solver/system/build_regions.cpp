@@ -257,7 +257,8 @@ Material Builder::material_of(const Region& r) const {
                          : key == "nu"                        ? r.nu
                          : r.material && r.material->has(key) ? r.material->number(key)
                                                               : std::nan("");
-    const std::string_view what = p.meaning.substr(0, p.meaning.find_first_of(",("));
+    const bool of_nothing = !r.material && std::isnan(r.E) && std::isnan(r.nu);
+    const std::string_view what = of_nothing ? "material" : p.meaning.substr(0, p.meaning.find_first_of(",("));
     if (std::isnan(value)) throw Error(r.where, fmt::format("region \"{}\" has no {}", r.name, what), give_material);
     if (!p.range.contains(value))
       throw Error(r.where, fmt::format("region \"{}\": {} {} is not in {}", r.name, what, value, p.range.text()));

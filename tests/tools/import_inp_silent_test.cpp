@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What .inp decks say twice, beside or behind what one expects: it counts, or it is told.
+#include <cmath>
 #include <map>
 
 #include "import_case.hpp"
@@ -126,6 +127,36 @@ TEST_F(ImportInpSilent, InitialVelocitiesOfOverlappingSetsAreMergedByNode) {
     EXPECT_EQ(v[3 * a + 1], .1) << a;
     EXPECT_EQ(v[3 * a + 2], a < 8 ? 0 : a == 8 ? .3 : .2) << a;
   }
+}
+
+// Truth: 4 N along the axes of the part, (.6, .8, 0) or away from an axis along x that meets (0, .5, -9), turned with its instance by 90
+// degrees about z: x becomes y, y becomes -x.
+TEST_F(ImportInpSilent, TransformsOfAPartTurnWithItsInstance) {
+  const auto at = bar.find("*MATERIAL"), section = bar.find("*SOLID");
+  const auto foot_of = [&](const std::string& transform) {
+    return foot("*PART, NAME=p\n" + bar.substr(0, at) + bar.substr(section) + transform +
+                "*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=i, PART=p\n1., 2., 3.\n0., 0., 0., 0., 0., 1., 90.\n*END INSTANCE\n"
+                "*END ASSEMBLY\n" +
+                bar.substr(at, section - at) + held + statics + "*CLOAD\ni.head, 1, 1.\n" + end);
+  };
+  const auto along = foot_of("*TRANSFORM, NSET=head, TYPE=R\n.6, .8, 0., -.8, .6, 0.\n");
+  EXPECT_NEAR(along[0], 4 * .8, 1e-5);
+  EXPECT_NEAR(along[1], -4 * .6, 1e-5);
+  const auto away = foot_of("*TRANSFORM, NSET=head, TYPE=C\n0., .5, -9., 1., .5, -9.\n");
+  EXPECT_NEAR(away[2], -2 * (9 / std::sqrt(81.25) + 10 / std::sqrt(100.25)), 1e-5);
+  for (int k = 0; k < 2; ++k) EXPECT_NEAR(away[k], 0, 1e-5);
+}
+
+TEST_F(ImportInpSilent, AHeadingOfSeveralLinesIsATitleAndWhatHasNoLawHasNoMaterial) {
+  const std::string text = scene("*HEADING\nA bar\nof two cubes, 3\n" + bar + held + statics + "*CLOAD\n9, 1, 4.\n" + end);
+  EXPECT_EQ(err.find("not read"), std::string::npos) << err;
+  EXPECT_NE(text.find("A bar"), std::string::npos) << text;
+  std::string lawless = bar;
+  lawless.erase(lawless.find("*ELASTIC"), 16);
+  scene(lawless + held + statics + "*CLOAD\n9, 1, 4.\n" + end);
+  const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("region \"bar\" has no material (give it with"), std::string::npos) << ran.err;
 }
 
 TEST_F(ImportInpSilent, TheLastSectionOfACellIsItsOwn) {

@@ -305,9 +305,9 @@ struct InpDeck {
   std::string instance;  // as written
   // of several instances: what is added to the numbers of the one being read, and in front of its names
   std::int64_t shift = 0;
-  std::string prefix;                            // "PART-1-1."
-  std::map<std::string, std::int64_t> shift_of;  // by upper-case name
-  size_t first_node = 0, first_section = 0;      // of that instance
+  std::string prefix;                                             // "PART-1-1."
+  std::map<std::string, std::int64_t> shift_of;                   // by upper-case name
+  size_t first_node = 0, first_section = 0, first_transform = 0;  // of that instance
   std::int64_t node_shift() const;
   struct Placed {
     Vec3 by = Vec3::Zero(), at = Vec3::Zero();

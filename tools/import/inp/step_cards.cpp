@@ -16,6 +16,7 @@ void read_heading(InpReading& r) {
   DataLine l;
   if (r.lines.next_data(l) && r.deck.title.empty())
     for (size_t i = 0; i < l.fields.size(); ++i) r.deck.title += (i ? ", " : "") + std::string(l.text(i));
+  r.skipped = true;  // further lines of it say nothing of the model
 }
 
 /// Lines "name = expression"; `#` begins a comment.
@@ -85,7 +86,7 @@ void read_instance(InpReading& r) {
   if (r.in_part) throw Error(r.card.place() + ":1", "*INSTANCE in a *PART");
   d.instance = r.card.value("NAME");
   d.in_assembly = false;  // what stands between it and its end is the part's
-  d.placed = {}, d.first_node = d.X.size(), d.first_section = d.sections.size();
+  d.placed = {}, d.first_node = d.X.size(), d.first_section = d.sections.size(), d.first_transform = d.transformed.size();
   const auto part = r.part_at.find(r.card.word("PART"));
   if (r.several) {
     r.card.need("NAME");
@@ -118,6 +119,10 @@ void end_instance(InpReading& r) {
   for (auto& [name, o] : d.orientations)
     if (name.starts_with(upper(d.prefix))) o.a = p.turn * o.a, o.b = p.turn * o.b;
   for (size_t s = r.several ? d.first_section : 0; s < d.sections.size(); ++s) d.sections[s].n1 = p.turn * d.sections[s].n1;
+  for (size_t t = r.several ? d.first_transform : 0; t < d.transformed.size(); ++t) {  // two directions, or two points of an axis
+    InpTransform& of = d.transformed[t];
+    for (Vec3* x : {&of.a, &of.b}) *x = of.cylindrical ? Vec3(p.at + p.turn * (*x + p.by - p.at)) : Vec3(p.turn * *x);
+  }
   d.shift = 0, d.prefix.clear();
   read_assembly(r);
 }
