@@ -62,6 +62,7 @@ void run(const ChartOptions& o) {
   std::vector<std::string> units;
   std::vector<size_t> columns_of;
   int n_curves = 0;
+  Heading first;                                                    // of the abscissae: all are drawn in its unit
   const auto panel_of = [&](const std::string& header) -> Panel& {  // all in one where --ylabel says what it shows
     const std::string unit = !o.y_label.empty() || header.find('[') == header.npos ? "" : unit_in_heading(header);
     const auto at = std::find(units.begin(), units.end(), unit);
@@ -82,8 +83,9 @@ void run(const ChartOptions& o) {
     for (size_t c = 0; o.y.empty() && c < table.header.size(); ++c)
       if (c != x && (o.by.empty() || c != table.find(o.by))) columns.push_back(c);
     if (columns.empty()) throw Error(file, "has no column to draw", "two at least: x and y");
-    if (common.x.label.empty()) common.x.label = table.header[x];
-    const auto xs = table.numbers(x);
+    if (first.text.empty()) first = {table.header[x], table.path};
+    auto xs = table.numbers(x);
+    for (double& value : xs) value *= unit_factor({table.header[x], table.path}, first);
     for (const size_t c : columns) {
       const auto ys = table.numbers(c);
       Panel& panel = panel_of(table.header[c]);
@@ -104,7 +106,7 @@ void run(const ChartOptions& o) {
   for (size_t k = 0; k < figure.panels.size(); ++k) {
     Panel& p = figure.panels[k];
     if (columns_of[k] > o.files.size()) p.y.label = units[k].empty() ? "" : "[" + units[k] + "]";  // their unit is all they have in common
-    if (!o.x_label.empty()) p.x.label = o.x_label;
+    p.x.label = o.x_label.empty() ? first.text : o.x_label;
     if (!o.y_label.empty()) p.y.label = o.y_label;
     if (n_curves == 1) p.curves.front().label.clear();
   }
@@ -117,7 +119,7 @@ Command chart_command(CLI::App& app) {
   auto* sub = app.add_subcommand("chart", "a chart of CSV files: a line of column names \"name [unit]\", then numbers");
   const auto o = std::make_shared<ChartOptions>();
   sub->add_option("files", o->files, "CSV files; - for stdin")->required();
-  sub->add_option("-x", o->x, "column of the abscissa, by name or number from 1; the first by default");
+  sub->add_option("-x", o->x, "column of the abscissa, by name or number from 1; the first by default; in the unit of the first file");
   sub->add_option("-y", o->y, "columns to draw, -y once for each; all others by default")->allow_extra_args(false);
   sub->add_option("--by", o->by, "column of names: one curve for each name");
   sub->add_option("--log", o->log, "logarithmic axes: x, y or xy")->check(CLI::IsMember({"x", "y", "xy"}));

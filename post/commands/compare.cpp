@@ -109,6 +109,8 @@ void run(const CompareOptions& o) {
 
   std::vector<std::vector<size_t>> row(all.size());
   for (size_t k = 1; k < all.size(); ++k) {
+    const double factor = unit_factor({all[k].x_title, all[k].path}, {first.x_title, first.path});
+    for (double& x : all[k].x) x *= factor;
     row[k] = matched(first, all[k]);
     const auto shared = row[k].size() - static_cast<size_t>(std::count(row[k].begin(), row[k].end(), nowhere));
     if (shared == 0) throw Error(all[k].path, fmt::format("has no {} in common with {}", first.x_title, first.path));
@@ -149,7 +151,7 @@ Command compare_command(CLI::App& app) {
   sub->add_option("files", o->files, "CSV files as series writes them, or run.h5 of hilo-solve; the first is the measure")
       ->required()
       ->expected(2, 99);
-  sub->add_option("-x", o->x, "column of the abscissa; the first, or the time of a run, by default");
+  sub->add_option("-x", o->x, "column of the abscissa; the first, or the time of a run, by default; in the unit of the first file");
   sub->add_option("-y", o->y, "columns to compare, -y once for each (of runs: histories, globs or formulas as in series); all by default")
       ->allow_extra_args(false);
   sub->add_flag("--json", o->json, "the table as JSON");

@@ -104,7 +104,7 @@ Command injury_command(CLI::App& app) {
       ->default_str("60");
   sub->add_option("-o,--output", o->csv, "CSV with a row for each sensor; - for stdout instead of the table");
   sub->add_option("--png", o->page, "report of one page (A4): pulses with their corridor, measures, signs, sources");
-  sub->add_option("--corridor", o->corridor, "CSV with t, x_low, x_high (y_, z_): a corridor for the pulses, changes in g");
+  sub->add_option("--corridor", o->corridor, "CSV with t, x_low, x_high (y_, z_): a corridor for the pulses, changes in g or [m/s^2]");
   sub->add_option("--eiband", o->eiband, "PNG: level held against its duration, with Eiband's tolerances (approximate)");
   sub->add_flag("--json", o->json, "a row for each sensor as JSON");
   example(*sub, "  hilo-post injury run.h5\n  hilo-post injury run.h5 --cfc 60 -o injury.csv --png report.png --eiband eiband.png");

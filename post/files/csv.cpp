@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/units.hpp"
 #include "model/store.hpp"
 
 namespace hilo {
@@ -92,6 +93,32 @@ std::vector<double> CsvTable::numbers(size_t c) const {
     values.push_back(x);
   }
   return values;
+}
+
+std::vector<double> CsvTable::numbers_in(const std::string& wanted, size_t c, const std::string& fallback, const std::string& hint) const {
+  const std::string word = unit_in_heading(header[c]);
+  const auto unit = named_unit(word.empty() ? fallback : word);
+  const NamedUnit to = *named_unit(wanted);
+  if (!unit || unit->unit != to.unit)
+    throw Error(
+        path, fmt::format("column \"{}\" has {}", header[c], word.empty() ? "no unit" : fmt::format("a unit that is none of {}", to.unit)),
+        hint);
+  std::vector<double> values = numbers(c);
+  for (double& x : values) x *= unit->si / to.si;
+  return values;
+}
+
+double unit_factor(const Heading& from, const Heading& to) {
+  const auto word_of = [](const std::string& text) {  // "hypot(x, y)" has none
+    return text.find('[') == text.npos && text.find(" (") == text.npos ? "" : unit_in_heading(text);
+  };
+  const std::string a = word_of(from.text), b = word_of(to.text);
+  if (a == b || a.empty() || b.empty()) return 1;
+  const auto one = named_unit(a), other = named_unit(b);
+  if (!one || !other || one->unit != other->unit)
+    throw Error(from.path, fmt::format("its abscissa \"{}\" does not fit \"{}\" of {}", from.text, to.text, to.path),
+                "choose abscissae of one quantity by -x");
+  return one->si / other->si;
 }
 
 std::string csv_text(const std::vector<std::string>& header, const std::vector<std::vector<double>>& columns) {

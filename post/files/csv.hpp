@@ -16,10 +16,20 @@ struct CsvTable {
   size_t find(const std::string& name) const;
   /// A column as numbers; an empty cell is NaN, any other text an Error with its line.
   std::vector<double> numbers(size_t column) const;
+  /// The same in the unit `wanted`, from that of its heading, or from `fallback` where that has none; Error where it does not fit.
+  std::vector<double> numbers_in(const std::string& wanted, size_t column, const std::string& fallback, const std::string& hint) const;
 };
 
 /// Read CSV with one header line; quotes as usual, lines that start with # are skipped.
 CsvTable read_csv(const std::string& path);
+
+/// A heading, and the file that has it.
+struct Heading {
+  std::string text, path;
+};
+/// What one of the unit of `from` is in that of `to`, as 0.001 for "t [ms]" and "t [s]"; 1 where either has none.  Error where they differ
+/// in more than a factor.
+double unit_factor(const Heading& from, const Heading& to);
 
 /// CSV of columns of numbers, written so that they read back as the same doubles.
 std::string csv_text(const std::vector<std::string>& header, const std::vector<std::vector<double>>& columns);

@@ -18,7 +18,7 @@ constexpr const char* axis_name[] = {"x", "y", "z"};
 
 Corridor read_corridor(const std::string& path) {
   const CsvTable table = read_csv(path);
-  const std::vector<double> t = table.numbers(table.find("t"));
+  const std::vector<double> t = table.numbers_in("s", table.find("t"), "s", "s or ms");
   if (t.size() < 2 || !std::is_sorted(t.begin(), t.end())) throw Error(path, "a corridor needs rising times, two at least");
   const auto has = [&](const std::string& name) {
     return std::any_of(table.header.begin(), table.header.end(),
@@ -28,7 +28,8 @@ Corridor read_corridor(const std::string& path) {
   for (size_t a = 0; a < 3; ++a) {
     const std::string low = fmt::format("{}_low", axis_name[a]), high = fmt::format("{}_high", axis_name[a]);
     if (!has(low) && !has(high)) continue;
-    Corridor::Side side{t, table.numbers(table.find(low)), table.numbers(table.find(high))};
+    const auto in_g = [&](const std::string& name) { return table.numbers_in("g", table.find(name), "g", "[g] or [m/s^2]"); };
+    Corridor::Side side{t, in_g(low), in_g(high)};
     for (size_t i = 0; i < t.size(); ++i)
       if (!(side.low[i] <= side.high[i])) throw Error(path, fmt::format("{} is above {} at t = {:g}", low, high, t[i]));
     c.axis[a] = std::move(side);

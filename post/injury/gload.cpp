@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "base/units.hpp"
 #include "post/files/csv.hpp"
 #include "post/injury/cfc.hpp"
 #include "post/run/run_file.hpp"
@@ -36,22 +35,10 @@ void filter(SensorRecord& s, double cfc) {
   s.filtered[3] = resultant(s.filtered);
 }
 
-double factor_of(const CsvTable& table, size_t column, const std::string& wanted, const std::string& fallback, const std::string& hint) {
-  const std::string word = unit_in_heading(table.header[column]);
-  const auto unit = named_unit(word.empty() ? fallback : word);
-  if (!unit || unit->unit != wanted)
-    throw Error(table.path,
-                fmt::format("column \"{}\" has {}", table.header[column], word.empty() ? "no unit" : "a unit that is none of " + wanted),
-                hint);
-  return unit->si;
-}
-
 Sensors from_csv(const std::string& path, const std::vector<std::string>& globs) {
   const CsvTable table = read_csv(path);
   Sensors out{path, std::filesystem::path(path).stem().string(), true, {}};
-  std::vector<double> t = table.numbers(0);
-  const double second = factor_of(table, 0, "s", "s", "s or ms");
-  for (double& x : t) x *= second;
+  const std::vector<double> t = table.numbers_in("s", 0, "s", "s or ms");
   for (size_t i = 1; i < t.size(); ++i)
     if (!(t[i] > t[i - 1])) throw Error(path, fmt::format("time does not rise in row {}", i + 1), "the first column is the time");
   std::vector<std::string> all;
@@ -69,13 +56,9 @@ Sensors from_csv(const std::string& path, const std::vector<std::string>& globs)
     if (std::find(all.begin(), all.end(), of) == all.end()) all.push_back(of);
     auto& values = found[of][static_cast<size_t>(axis[0] - 'x')];
     if (!values.empty()) throw Error(path, fmt::format("\"{}\" is there twice", plain), "name the sensors: seat.x, head.x");
-    values = table.numbers(c);
-    const double factor = factor_of(table, c, "m/s^2", "", "[g] or [m/s^2]") / 9.80665;
-    for (double& x : values) {
-      if (!std::isfinite(x))
-        throw Error(path, fmt::format("column \"{}\" has empty cells", table.header[c]), "fill them, or cut the record");
-      x *= factor;
-    }
+    values = table.numbers_in("g", c, "", "[g] or [m/s^2]");
+    if (!std::ranges::all_of(values, [](double x) { return std::isfinite(x); }))
+      throw Error(path, fmt::format("column \"{}\" has empty cells", table.header[c]), "fill them, or cut the record");
   }
   for (const std::string& name : all) {
     if (std::ranges::none_of(globs, [&](const std::string& g) { return fnmatch(g.c_str(), name.c_str(), 0) == 0; })) continue;

@@ -132,6 +132,17 @@ TEST(Chart, points_without_lines) {
   EXPECT_GT(lines[0], 200);
 }
 
+// Truth: the same chart with the second table in seconds.
+TEST(Chart, abscissae_are_drawn_in_the_unit_of_the_first) {
+  const Workplace place;
+  std::filesystem::create_directory(place / "s"), std::filesystem::create_directory(place / "ms");
+  place.write("a.csv", "t [s],x [m]\n0,0\n2,2\n");
+  place.write("s/b.csv", "t [s],x [m]\n0,0\n1,1.5\n");
+  place.write("ms/b.csv", "t [ms],x [m]\n0,0\n1000,1.5\n");
+  succeeded(place.run("unset DISPLAY\nhilo-post chart a.csv s/b.csv -o s.png\nhilo-post chart a.csv ms/b.csv -o ms.png"));
+  EXPECT_TRUE(text_of(place / "s.png") == text_of(place / "ms.png"));
+}
+
 // 250 MPa and 250 kN stood at one height: each unit has a panel, and there the curve that falls and the one that rises.
 TEST(Chart, each_unit_has_a_panel_of_its_own) {
   const Workplace place;

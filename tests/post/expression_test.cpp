@@ -128,6 +128,22 @@ TEST(Compare, TablesWithoutASharedInstantOrColumnAreRefused) {
   EXPECT_EQ(place.run("hilo-post compare a.csv d.csv").exit, 2);
 }
 
+// Truth: 1000 ms are 1 s.
+TEST(Compare, TimesInOtherUnitsAreConvertedAndOtherQuantitiesRefused) {
+  const Workplace place;
+  place.write("a.csv", "t [s],x [m]\n0,0\n1,1\n2,2\n");
+  place.write("b.csv", "t [ms],x [m]\n0,0\n1000,1.25\n2000,2\n");
+  place.write("c.csv", "turn [deg],x [m]\n0,0\n1,1\n");
+  const Ran ran = succeeded(place.run("hilo-post compare a.csv b.csv --json"));
+  EXPECT_EQ(ran.err, "") << "all rows are shared";
+  EXPECT_NE(ran.out.find(R"("off by": 0.25, "in % of peak": 12.5, "at t [s]": 1})"), std::string::npos) << ran.out;
+  const Ran back = succeeded(place.run("hilo-post compare b.csv a.csv --json"));
+  EXPECT_NE(back.out.find(R"("off by": 0.25, "in % of peak": 12.5, "at t [ms]": 1000})"), std::string::npos) << back.out;
+  for (const char* command : {"compare a.csv c.csv", "chart a.csv c.csv -o c.png"})
+    expect_end(place.run(std::string("hilo-post ") + command), 2,
+               "c.csv: its abscissa \"turn [deg]\" does not fit \"t [s]\" of a.csv (choose abscissae of one quantity by -x)");
+}
+
 TEST(Compare, ARunDiffersFromItselfByNothing) {
   const Ran ran = post("compare run.h5 run.h5 -y energy -y 'pull [kN] = joint.trunnion.Fx/1e3' --json");
   ASSERT_EQ(ran.exit, 0) << ran.err;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post injury as a user runs it: one truth in text, CSV and JSON, and pages that nothing runs out of.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "picture_file.hpp"
@@ -75,6 +77,11 @@ TEST(InjuryReport, tells_how_far_a_pulse_leaves_its_corridor) {
   double most = 0;
   for (double t = 0.01; t < 0.0199; t += 1e-6) most = std::max(most, 100 * std::sin(M_PI * (t - 0.01) / 0.02) - 1 - 79 * t / 0.0199);
   EXPECT_NEAR(table.numbers(table.find("outside_x")).front(), most, 0.5);
+  // Truth: the same corridor in ms and m/s^2
+  place.write("other.csv",
+              fmt::format("t [ms],x_low [m/s^2],x_high [m/s^2]\n0,{0},{1}\n19.9,{0},{2}\n20.1,{0},{2}\n", -9.80665, 9.80665, 80 * 9.80665));
+  succeeded(place.run("hilo-post --quiet injury run.h5 --cfc 1000 --corridor other.csv -o other_out.csv"));
+  EXPECT_EQ(text_of(place / "other_out.csv"), text_of(place / "out.csv"));
   place.write("empty.csv", "t,a\n0,1\n1,2\n");
   EXPECT_EQ(place.run("hilo-post injury run.h5 --corridor empty.csv").exit, 2);
 }
