@@ -2,6 +2,7 @@
 #include "post/run/columns.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -136,7 +137,15 @@ std::vector<Column> RunColumns::pick(const std::vector<std::string>& wanted) {
       }
     }
     if (any) continue;
-    const std::string hint = suggest(glob, known_);
+    std::string hint = suggest(glob, known_);
+    std::vector<std::string> members;  // of a group, as joint
+    for (const std::string& name : known_)
+      if (name.starts_with(glob + ".")) members.push_back(name);
+    if (constexpr size_t most = 8; !members.empty()) {
+      hint =
+          fmt::format("\"{}.*\" for all of: {}", glob, fmt::join(members.begin(), members.begin() + std::min(most, members.size()), ", "));
+      if (members.size() > most) hint += fmt::format(" ... {} in all", members.size());
+    }
     throw Error(run_.path, fmt::format("no history \"{}\"", glob), hint.empty() ? "see --list" : hint);
   }
   return picked;

@@ -90,8 +90,8 @@ std::vector<size_t> choose_instants(const std::vector<double>& t, const std::str
 
 std::pair<double, double> parse_times(const std::string& text, std::pair<double, double> all) {
   if (text.empty()) return all;
-  const auto wrong = [&] {
-    return Error("--times", fmt::format("\"{}\" is no span of time", text), "write FROM:TO in s, such as 0.01:0.05", Exit::usage);
+  const auto wrong = [&](const std::string& hint = "write FROM:TO in s, such as 0.01:0.05") {
+    return Error("--times", fmt::format("\"{}\" is no span of time", text), hint, Exit::usage);
   };
   const auto colon = text.find(':');
   if (colon == std::string::npos) throw wrong();
@@ -103,7 +103,8 @@ std::pair<double, double> parse_times(const std::string& text, std::pair<double,
     return x;
   };
   const double from = number(text.substr(0, colon), all.first), to = number(text.substr(colon + 1), all.second);
-  if (!(from < to)) throw wrong();
+  if (from == to) throw wrong("its two ends are one instant: TO comes after FROM");
+  if (!(from < to)) throw wrong("TO comes after FROM");
   const double slack = 1e-9 * (all.second - all.first);
   if (from < all.first - slack || to > all.second + slack)
     throw Error("--times", fmt::format("{} is not within the run", text), fmt::format("there is {:g}:{:g}", all.first, all.second));

@@ -77,6 +77,13 @@ TEST(Series, an_unknown_name_is_an_error_with_the_nearest_one) {
   EXPECT_EQ(ran.out, "");
 }
 
+TEST(Series, a_group_is_an_error_with_the_histories_in_it) {
+  EXPECT_EQ(post(sample_place(), "series run.h5 joint").err,
+            "hilo-post: run.h5: no history \"joint\" (\"joint.*\" for all of: joint.trunnion)\n");
+  EXPECT_EQ(post(sample_place(), "series run.h5 energy --times 0:0").err,
+            "hilo-post: --times: \"0:0\" is no span of time (its two ends are one instant: TO comes after FROM)\n");
+}
+
 TEST(Series, a_chart_has_curves_on_white) {
   const auto& place = sample_place();
   ASSERT_EQ(post(place, "series run.h5 joint.trunnion --png joint.png").exit, 0);
