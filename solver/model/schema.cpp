@@ -112,7 +112,8 @@ std::vector<ArraySchema>& arrays() {
        "x - X; attribute t [s] of the group; f4, like all fields, with output.precision = \"single\""},
       {"run.h5", "/field/<step>/velocity", "f8", "(n_nodes, 3)", "m/s", "velocity at t"},
       {"run.h5", "/field/<step>/acceleration", "f8", "(n_nodes, 3)", "m/s^2",
-       "acceleration at t, second order (mean of the mid-step values around it)"},
+       "acceleration at t, second order (mean of the mid-step values around it); of first order by V0 and, where joints or ties hold, "
+       "bathe"},
       {"run.h5", "/field/<step>/stress", "f8", "(n_nodes, 6)", "Pa",
        "Cauchy stress xx yy zz yz xz xy, recovered from the cells of the node's first flexible region alone; 0 on rigid regions"},
       {"run.h5", "/field/<step>/von_mises", "f8", "(n_nodes)", "Pa", "von Mises stress of it; of a node of bars alone the mean of theirs"},

@@ -50,11 +50,11 @@ TEST(Integrator, KnownToFailWarnsWhereItDoes) {
   EXPECT_TRUE(warns(integrator("generalized-alpha") + "--set time.rho=0.95"));
   EXPECT_TRUE(warns(integrator("hht") + "--set time.rho=1"));
   EXPECT_TRUE(warns(integrator("V0")));
+  EXPECT_TRUE(warns(integrator("bathe"))) << "accelerations of what a joint holds are of first order (methods_test)";
   EXPECT_TRUE(warns(integrator("U0") + "--set time.rho1=1 --set time.rho2=1 --set time.rho3=0.5"));
   EXPECT_FALSE(warns(integrator("energy-momentum")));
   EXPECT_FALSE(warns(integrator("generalized-alpha") + "--set time.rho=0.6"));
   EXPECT_FALSE(warns(integrator("U0")));
-  EXPECT_FALSE(warns(integrator("bathe")));
   EXPECT_FALSE(warns(integrator("mid-point"))) << "on bodies it is energy-momentum";
   dpsmooth(w);
   std::filesystem::rename(w / "dpsmooth.toml", w / "pend3d.toml");

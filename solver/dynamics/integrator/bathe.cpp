@@ -71,6 +71,12 @@ class BatheIntegrator final : public StageIntegrator {
 
 std::unique_ptr<Integrator> Bathe::make(const Entry&) { return make_bathe(); }
 
+/// Along what joints hold, a1 is the acceleration at t1 - h/3: velocities of the two stages are off by different multiples of h^2 times the
+/// jerk, and a1 has their difference over h.
+std::string Bathe::weakness(const Entry&, const System& system) {
+  return system.traits().constrains ? "accelerations and multipliers of Bathe are of first order where joints or ties hold" : "";
+}
+
 std::unique_ptr<StageIntegrator> make_bathe() { return std::make_unique<BatheIntegrator>(); }
 
 }  // namespace hilo
