@@ -14,6 +14,8 @@ inline constexpr Param at{"at", Type::vector3, "m", "!", "joint point, reference
 inline constexpr Param at_a{"at_a", Type::vector3, "m", "!", "point on a"};
 inline constexpr Param at_b{"at_b", Type::vector3, "m", "!", "point on b"};
 inline constexpr Param axis{"axis", Type::vector3, "1", "!", "joint axis, inertial axes at the start; need not be of unit length"};
-inline constexpr Param x_axis{"x", Type::vector3, "1", "", "first axis of the joint frame, made normal to `axis`"};
+inline constexpr Param x_axis{"x", Type::vector3, "1", "",
+                              "first axis of the joint frame, made normal to `axis`; that of [1, 0, 0], [0, 1, 0], [0, 0, 1] with the "
+                              "smallest part along `axis` when absent"};
 
 }  // namespace hilo::keys

@@ -190,6 +190,12 @@ constexpr Param angle_key{"angle", number, "rad", "", "drives the joint: angle o
                   "course of what drives the joint: interpolation = \"smooth\" for a few points, \"spline\" for many"},
     third_end{"carrier", text, "", "ground", "what carries both axes: a rigid region, a body, a set, or ground"};
 
+constexpr Param cross_a{"axis", vector3, "1", "!",
+                        "arm of the cross that turns in a, at a right angle to the shaft of a; inertial axes at the start, of any length"},
+    cross_b{"x", vector3, "1", "!",
+            "arm of the cross that turns in b, made normal to `axis`: the vector product of `axis` and the shaft of b"},
+    shaft_a{"axis", vector3, "1", "!", "shaft of a, and of b without `axis_b`; inertial axes at the start, of any length"};
+
 constexpr Param stiffness{
     "stiffness", numbers, "N/m", "", "makes the joint give way: along x, y and axis of its frame, or one number for all",
     at_least(0), {1, 3}},
@@ -255,15 +261,15 @@ Registry<JointKind>& joint_kinds() {
              {slide},
              {0, 1}},
             {"universal",
-             "common point, the axis of a stays normal to `x` of b (4 rows)",
-             giving_way(joint_keys(true)),
+             "common point; the cross has an arm along `axis` in a and one along `x` in b, which stay at a right angle (4 rows)",
+             giving_way({keys::at, cross_a, cross_b}),
              universal,
              "xyzB",
              {},
              {}},
             {"constant-velocity",
-             "common point, shafts of a and b turn by the same angle at any bend (4 rows)",
-             giving_way(joint_keys(true, {{"axis_b", vector3, "1", "", "shaft of b where it is bent at the start"}})),
+             "common point, shafts of a and b turn by the same angle at any bend, whatever `x` is (4 rows)",
+             giving_way({keys::at, shaft_a, keys::x_axis, {"axis_b", vector3, "1", "", "shaft of b where it is bent at the start"}}),
              constant_velocity,
              "xyzC",
              {},

@@ -107,6 +107,16 @@ TEST_F(Mistake, MissingKey) {
   EXPECT_EQ(refusal("[[probe]]\non = \"tip\"\n"), "scene.toml:1:1: probe: \"name\" is missing (name, unique within the section)");
 }
 
+// Truth: hooke_joint turns both shafts alike with the cross between them alone; any other cross jams or idles.
+TEST_F(Mistake, AUniversalJointWithoutItsSecondArm) {
+  std::string text = hinge;
+  text.replace(text.find("revolute"), 8, "universal");
+  EXPECT_EQ(refusal(text),
+            "scene.toml:2:1: joint \"trunnion\": \"x\" is missing (arm of the cross that turns in b, made normal to `axis`: the vector "
+            "product of `axis` and the shaft of b)");
+  EXPECT_EQ(load(text + "x = [1, 0, 0]\n").entries("joint").size(), 1u);
+}
+
 TEST_F(Mistake, NameGivenTwice) {
   EXPECT_EQ(refusal(pull + pull), "scene.toml:10:1: load \"pull\" is given twice (first at scene.toml:4:1)");
   EXPECT_EQ(refusal("[region.box]\ndamping = 0\n[[body]]\nname = \"box\"\nmass = 1\ncom = [0, 0, 0]\n"),
