@@ -2,6 +2,7 @@
 // An analysis of modes: the state of rest, and then a row of the results for every mode, its shape added to that state.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -79,6 +80,7 @@ class ModeSteps final : public Steps {
     if (spins) modes = whirling_modes(system, *run_.solver, rest, modes, wanted);
     if (modes.empty()) throw Error(time_.where("analysis"), "nothing that has mass can move: there are no modes");
     if (!spins) check_rest(modes);
+    tell_stuck(modes);
     for (const FoundMode& m : modes) record(m);
     run_.lists.emplace_back("modes", as_json(modes));
     run_.report.table = as_table(modes, system.mass);
@@ -100,6 +102,16 @@ class ModeSteps final : public Steps {
     }
     for (const char on : system.rows_on()) held += on != 0;
     return n > held;
+  }
+  /// At rest friction of joints is a damper that lets nothing swing: a joint that sticks.
+  void tell_stuck(const std::vector<FoundMode>& modes) const {
+    const auto frictions = run_.scene.entries("friction");
+    const auto stuck = std::ranges::find_if(modes, [](const FoundMode& m) { return m.figures.damping > 1; });
+    if (frictions.empty() || stuck == modes.end()) return;
+    warn(frictions.front().place.text(),
+         fmt::format("{}: at rest it is a damper of mu N r^2/slip_velocity, and mode {} has the damping ratio {:.3g}: a joint that sticks "
+                     "is held by one of kind fixed in its place",
+                     frictions.front().label(), stuck - modes.begin() + 1, stuck->figures.damping));
   }
   /// What is not at rest would come to rest where each mode has given way to its share of the forces.
   void check_rest(const std::vector<FoundMode>& modes) const {

@@ -95,6 +95,18 @@ void check_beam(const Entry& e, Warnings& w) {
     if (e.given(key)) w.add(e, key, "says nothing but to fidelity = \"linear\"");
 }
 
+/// Friction of joints is a force of the speed.
+void warn_of_friction(const Entries& entries, const Entry& time, Warnings& w) {
+  const auto list = entries.find("friction");
+  const std::string& analysis = time.text("analysis");
+  const bool starts = analysis == "dynamic" || analysis == "modes";
+  if (list == entries.end() || (starts && time.text("start") != "equilibrium")) return;
+  for (const Entry& e : list->second)
+    w.add(e, "",
+          fmt::format("it has no force in {}: what it would hold gives way there (a fixed joint holds it)",
+                      starts ? "start = \"equilibrium\"" : fmt::format("analysis = \"{}\"", analysis)));
+}
+
 void warn_of_time(const Entries& entries, const Entry& time, Warnings& w) {
   if (time.has("reach") && time.text("analysis") != "path") w.add(time, "reach", "says nothing but to analysis = \"path\"");
   if (!time.has("step")) return;
@@ -154,6 +166,7 @@ std::vector<std::string> find_implausible(const Entries& entries) {
     }
   warn_of_ends(entries, entries.find("time")->second.front(), w);
   warn_of_time(entries, entries.find("time")->second.front(), w);
+  warn_of_friction(entries, entries.find("time")->second.front(), w);
   check_unused(entries, w);
   return std::move(w.lines);
 }

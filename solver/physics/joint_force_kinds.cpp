@@ -118,7 +118,8 @@ Registry<JointForceKind>& joint_force_kinds() {
            linear},
           {"",
            "friction",
-           "Coulomb friction in a revolute, cylindrical, prismatic, screw or spherical joint, pressed by the joint's own reaction force",
+           "Coulomb friction in a revolute, cylindrical, prismatic, screw or spherical joint, pressed by the joint's own reaction force; "
+           "without force in statics (static, path, buckling, start = equilibrium), a damper of mu N r^2/slip_velocity in modes",
            {{"joint", text, "", "!", "name of the [[joint]]"},
             {"coefficient", number, "1", "!", "of friction", at_least(0)},
             {"radius", number, "m", "", "of the surfaces that turn; not of a prismatic joint", above(0)},

@@ -220,6 +220,28 @@ TEST_F(Warning, NamesAStepThatIsLongForTheLoadButNotASampledOneThatIsShort) {
   EXPECT_NE(w[0].find("longer than the run"), std::string::npos);
 }
 
+// Truth: the force of friction is of the speed, which statics has not.
+TEST_F(Warning, NamesFrictionOfJointsThatHasNoForce) {
+  const auto warnings = [&](const std::string& time) {
+    return load(hinge + "[[friction]]\nname = \"rub\"\njoint = \"trunnion\"\ncoefficient = 0.3\nradius = 0.1\n[time]\n" + time).warnings;
+  };
+  const auto expected = [](const std::string& where) {
+    return "scene.toml:9:1: friction \"rub\": it has no force in " + where +
+           ": what it would hold gives way there (a fixed joint holds it)";
+  };
+  for (const std::string analysis : {"static", "path", "buckling"}) {
+    const auto w = warnings("analysis = \"" + analysis + "\"\n");
+    ASSERT_EQ(w.size(), 1u) << analysis;
+    EXPECT_EQ(without_folder(w[0]), expected("analysis = \"" + analysis + "\""));
+  }
+  for (const std::string analysis : {"modes", "dynamic"}) {
+    EXPECT_TRUE(warnings("analysis = \"" + analysis + "\"\n").empty());
+    const auto w = warnings("start = \"equilibrium\"\nanalysis = \"" + analysis + "\"\n");
+    ASSERT_EQ(w.size(), 1u) << analysis;
+    EXPECT_EQ(without_folder(w[0]), expected("start = \"equilibrium\""));
+  }
+}
+
 TEST_F(Warning, NamesGravityDampingAndWhatIsNotUsed) {
   const auto one = [&](const std::string& text) {
     const auto w = load(text).warnings;
