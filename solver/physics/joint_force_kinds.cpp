@@ -84,10 +84,11 @@ StopLaw stop_law(const EntryValues& e) {
 }
 
 std::vector<Param> rebound_keys(std::string_view unit_of_speed) {
-  return {
-      {"restitution", number, "1", "1", "speed after an impact, divided by that before it; 1 gives the energy back exactly", from_to(0, 1)},
-      {"rest_speed", number, unit_of_speed, "1e-3", "slower impacts lose no smaller part of their speed than they would at this one",
-       above(0)}};
+  return {{"restitution", number, "1", "1",
+           "speed after an impact, divided by that before it; 1 gives the energy back exactly, less needs 10 steps an impact or more",
+           from_to(0, 1)},
+          {"rest_speed", number, unit_of_speed, "1e-3", "slower impacts lose no smaller part of their speed than they would at this one",
+           above(0)}};
 }
 
 Registry<JointForceKind>& joint_force_kinds() {

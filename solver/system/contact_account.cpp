@@ -10,7 +10,6 @@
 namespace hilo {
 namespace {
 
-constexpr int resolved = 5;        // steps of an impact, below which it is told
 constexpr double too_deep = 0.25;  // share of a cell or layer, above which it is
 
 }  // namespace
@@ -306,7 +305,7 @@ void Contacts::each_facet(const Config& q, const std::function<void(const Presse
 void Contacts::add_to_report(Json& run) const {
   Json contacts = Json::object(Json::In::lines);
   const auto tell = [&](const std::string& name, size_t points, const std::string& told, const ContactSums& sums, bool loses, bool facets) {
-    if (!is_static_ && sums.impacts > 0 && sums.shortest < resolved)
+    if (!is_static_ && sums.impacts > 0 && sums.shortest < ContactSums::resolved)
       warn(fmt::format("contact \"{}\"", name), fmt::format("the shortest of {} impacts lasted {} steps: {}", sums.impacts, sums.shortest,
                                                             plain   ? "neither its force nor its energy is resolved"
                                                             : loses ? "its force and its restitution are not resolved"

@@ -108,7 +108,7 @@ void Springs::archive(Archive& a) {
     a("spring " + c.name);
     c.law->archive(a);
   }
-  a("passed", told_);
+  a("passed", told_), a("impacts of stops", impacts_);
 }
 
 std::vector<Output> Springs::outputs() const {
@@ -123,10 +123,15 @@ void Springs::observe(const Sight& at) {
   const Moment& m = *at.step;
   std::vector<double>& out = at.mid;
   ConnectorGradient left;
-  for (const Spring& c : list) {
+  impacts_.resize(list.size());
+  for (size_t i = 0; i < list.size(); ++i) {
+    const Spring& c = list[i];
     gradient(c, *m.s.left, left);
     Response r;
     spring_elastic(c, m.s, r);
+    const size_t of_gap = c.group == "stop" ? c.measures.size() : 1;  // a support has springs in its plane behind it
+    if (m.s.h > 0 && c.law->needs_rate())
+      impacts_[i].add(std::any_of(r.s.begin(), r.s.begin() + of_gap, [](double s) { return s != 0; }) ? 1 : 0, 0);
     if (m.s.h > 0) viscous(c, m.s, m.lambda, r);
     const Vec6 f = force_on_b(c, left, r.s.data(), *m.s.left);
     if (c.axes == Spring::Axes::inertial)
@@ -134,6 +139,14 @@ void Springs::observe(const Sight& at) {
     else
       append_in_frame(c, f, *m.s.left, out);
   }
+}
+
+void Springs::add_to_report(Json&) const {
+  for (size_t i = 0; i < impacts_.size(); ++i)
+    if (const ContactSums& sums = impacts_[i]; sums.impacts > 0 && sums.shortest < ContactSums::resolved)
+      warn(fmt::format("{} \"{}\"", list[i].group, list[i].name),
+           fmt::format("the shortest of {} impacts lasted {} steps: its force and its restitution are not resolved", sums.impacts,
+                       sums.shortest));
 }
 
 void Springs::tie(Ties& ties) const {

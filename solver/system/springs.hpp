@@ -3,6 +3,7 @@
 #pragma once
 #include "physics/spring.hpp"
 #include "system/joints.hpp"
+#include "system/surface_pair.hpp"
 
 namespace hilo {
 
@@ -23,6 +24,7 @@ class Springs final : public Contribution, public Equations, public Stateful, pu
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
   void observe(const Sight& at) override;
+  void add_to_report(Json& run) const override;
   void tie(Ties& ties) const override;
   void add_timed(std::span<const int> group, double t, double T, std::span<double> sum) const override;
   void add_taken(std::span<const int> group, const Stage& s, std::span<const double> lambda, std::span<double> sum) const override;
@@ -37,6 +39,7 @@ class Springs final : public Contribution, public Equations, public Stateful, pu
   std::vector<int> clique_;
   std::vector<char> owned_;
   std::vector<char> told_;                           // of what a law has passed
+  std::vector<ContactSums> impacts_;                 // of stops that keep a part of the speed
   std::vector<std::pair<int, std::string>> passed_;  // by the step that is tried: springs, and what to tell
 };
 

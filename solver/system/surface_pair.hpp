@@ -17,12 +17,13 @@ namespace hilo {
 
 /// Sums of a contact over the run.
 struct ContactSums {
-  double slip = 0, dissipated = 0;  // [m, J]
-  double way = 0;                   // slip on the way to the answer of the load step at work, in steps from rest [m]
-  double share = 0;                 // largest depth, as a share of the cell
-  int steps = 0;                    // that the contact lasts by now
-  int impacts = 0, shortest = 0;    // that have ended; steps of the shortest, 0: none has
-  int outside = 0;                  // most points that were past the border of a height field at once
+  static constexpr int resolved = 5;  // steps of an impact, below which it is told
+  double slip = 0, dissipated = 0;    // [m, J]
+  double way = 0;                     // slip on the way to the answer of the load step at work, in steps from rest [m]
+  double share = 0;                   // largest depth, as a share of the cell
+  int steps = 0;                      // that the contact lasts by now
+  int impacts = 0, shortest = 0;      // that have ended; steps of the shortest, 0: none has
+  int outside = 0;                    // most points that were past the border of a height field at once
   /// A step with this force [N] and this slip times force [N m].
   void add(double pressing, double slid);
   /// What is dissipated in such a step [J].  Pressures on the way are none of the answer: there the slip is kept, for friction's force

@@ -73,6 +73,33 @@ TEST_F(Messages, OfAKeyThatIsForOtherIntegratorsNameThem) {
   EXPECT_EQ(run("hilo-solve scene.toml -o run.h5", folder).err.find("says nothing"), std::string::npos);
 }
 
+// Truth: c/(2 sqrt(k I)) with c = mu N r^2/slip_velocity = 0.5 100 0.2^2/1e-3, k = 10, I = 0.1 + 0.5^2.
+TEST_F(Messages, OfModesThatFrictionSticksSayHowItIsHeld) {
+  put("scene.toml",
+      bodies("analysis = \"modes\"\nmodes = 1\n[[spring]]\nkind = \"torsion\"\nname = \"wire\"\nb = \"arm\"\naxis = [0, 1, 0]\n"
+             "stiffness = 10\n[[friction]]\nname = \"brake\"\njoint = \"hinge\"\ncoefficient = 0.5\nradius = 0.2\n"
+             "preload = 100\nreaction = false\n"));
+  expect_end(
+      run("hilo-solve scene.toml -o run.h5", folder), 0,
+      "scene.toml:23:1: friction \"brake\": at rest it is a damper of mu N r^2/slip_velocity, and mode 1 has the damping ratio 535: a "
+      "joint that sticks is held by one of kind fixed in its place");
+}
+
+// Truth: an impact lasts about pi sqrt(I/k) = 19 ms, I = 0.1 + 0.5^2, k = 1e4: two steps of 10 ms.
+TEST_F(Messages, OfAStopTellAnImpactThatStepsDoNotResolve) {
+  const auto said = [&](const std::string& restitution, const std::string& step) {
+    put("scene.toml",
+        bodies("[[stop]]\nkind = \"angle\"\nname = \"buffer\"\njoint = \"hinge\"\nupper = 0.3\nstiffness = 1e4\nrestitution = " +
+               restitution + "\n[[initial]]\non = [\"arm\"]\nspin = [0, 10, 0]\n"));
+    return run("hilo-solve scene.toml -o run.h5 --set time.end=0.3 --set time.step=" + step, folder);
+  };
+  const std::string text = "stop \"buffer\": the shortest of 1 impacts lasted ";
+  const Ran coarse = said("0.3", "1e-2");
+  expect_end(coarse, 0, text), expect_end(coarse, 0, " steps: its force and its restitution are not resolved");
+  EXPECT_EQ(said("0.3", "1e-3").err.find(text), std::string::npos);
+  EXPECT_EQ(said("1", "1e-2").err.find(text), std::string::npos) << "energy is given back at any step";
+}
+
 TEST_F(Messages, OfASingularMatrixNameWhatIsFree) {
   // a bob without mass or inertia; it may turn about its joint as it likes
   put("scene.toml",
