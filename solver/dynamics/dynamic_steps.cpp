@@ -53,7 +53,7 @@ class DynamicSteps final : public Steps {
       const double to = events[i].t;
       if (!at_.begun) {
         if (i == 0 || events[i - 1].jump || run_.integrator->needs_acceleration()) restart();
-        if (i == 0) run_.audit->start(run_.state), run_.recorder->first(run_.state, run_.audit->ledger());
+        if (i == 0) run_.audit->start(run_.state), record_start();
         if (companion_ && !companion_->has_begun() && !run_.redundancy.singular()) companion_->begin(run_.state);
         at_.begun = true, at_.step = at_.done = 0, at_.from = i == 0 ? 0 : events[i - 1].t;
       }
@@ -152,6 +152,25 @@ class DynamicSteps final : public Steps {
     run_.integrator->restart();
     if (control_) control_->restart(state);
     if (companion_ && companion_->has_begun()) companion_->restart(state, system.traits().is_driven, 0.05 * step_);
+  }
+
+  /// What is smooth has its forces at the start as they are there; of what vibrates or hits they come from the steps behind.
+  void record_start() {
+    Config a;
+    std::vector<double> lambda;
+    const bool known = run_.is_smooth && !run_.redundancy.singular() && has_accelerations(a, lambda);
+    const Instant there(run_.state, std::move(a));
+    run_.recorder->first(run_.state, run_.audit->ledger(), known ? &there.stage : nullptr, lambda);
+  }
+
+  /// False where masses and joints do not determine them.
+  bool has_accelerations(Config& a, std::vector<double>& lambda) const {
+    try {
+      solve_acceleration(run_.system, *run_.solver, run_.state, a, lambda);
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
   }
 
   /// Steps of equal length from `from` to `to`, up to a thousandth of one longer than asked for: the times of a table are rounded, and one

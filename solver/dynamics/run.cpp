@@ -15,6 +15,8 @@
 #include "dynamics/start.hpp"
 #include "system/modal_damping.hpp"
 #include "system/revising.hpp"
+#include "system/springs.hpp"
+#include "system/touching.hpp"
 
 namespace hilo {
 namespace {
@@ -247,7 +249,9 @@ class Run {
     setup.redundant = run_.redundancy.rank < run_.redundancy.rows;
     setup.own_time = in_time ? run_.integrator->own_time() : 1;
     setup.alternates = in_time && run_.integrator->alternates();
-    setup.is_static = !in_time;
+    const System& system = run_.system;
+    run_.is_smooth = in_time && !system.traits().deforms && system.modes.empty() && !touching(system) && springs_are_smooth(system);
+    setup.is_smooth = run_.is_smooth, setup.is_static = !in_time;
     run_.recorder = std::make_unique<Recorder>(run_.system, run_.scene, std::move(setup));
   }
 

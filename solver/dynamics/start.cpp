@@ -178,7 +178,20 @@ bool solve_beside_massless(const System& system, KktSolver& solver, const Stage&
   return system.comm->max(part) <= no_part * system.comm->max(whole);
 }
 
+/// The pair of the rate terms: measures are quadratic, so any time between its two gives the exact rate.
+void add_rates(Stage& stage, const State& s, Config& before, Config& after) {
+  constexpr double h = 1e-3;  // [s]
+  combine(before, {{1, &s.q}, {-h / 2, &s.v}});
+  combine(after, {{1, &s.q}, {h / 2, &s.v}});
+  stage.w0 = &before, stage.w1 = &after, stage.h = h, stage.v = &s.v;
+}
+
 }  // namespace
+
+Instant::Instant(const State& s, Config accelerations) : a(std::move(accelerations)), stage(stage_at(s.q, s.t)) {
+  add_rates(stage, s, before, after);
+  stage.a = &a;
+}
 
 void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda, bool has_mass) {
   // guess: bodies that keep their spin, everything else unaccelerated; the solve adds the rest
@@ -203,10 +216,7 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
   lambda.assign(3 * system.n_joint_blocks(), 0.0);
   Stage stage = mass_stage(s.q, a, s.t);
   Config before, after;
-  const double h = 1e-3;  // [s] of the pair of the rate terms: measures are quadratic, so any h gives the exact rate
-  combine(before, {{1, &s.q}, {-h / 2, &s.v}});
-  combine(after, {{1, &s.q}, {h / 2, &s.v}});
-  stage.w0 = &before, stage.w1 = &after, stage.h = h, stage.v = &s.v;
+  add_rates(stage, s, before, after);
   // linear in accelerations and multipliers, but for friction that the multipliers press: Newton then
   const bool pressed = system.traits().is_pressed;
   Residual r;

@@ -19,6 +19,13 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
 /// of mass and rows at s.q.
 void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda,
                         bool has_mass = false);
+/// A stage at an instant, with accelerations: what is there, at rest or in motion.
+struct Instant {
+  Config a, before, after;  // the pair of the rate terms
+  Stage stage;
+  Instant(const Instant&) = delete;
+  Instant(const State& s, Config accelerations);
+};
 /// v becomes the nearest velocities, in the mass norm, that directors, products of modes and joints allow at time t; the solver then holds
 /// the matrix of mass and rows at q.
 void nearest_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);

@@ -56,9 +56,6 @@ struct StopLaw {
   double rest_speed = 1e-3;  // speeds of approach below it are damped as this one, so that a part at rest comes to rest
 };
 std::unique_ptr<SpringLaw> make_stop(const StopLaw& stop);
-/// y = alpha v of the damper f = k d (1 + alpha dd/dt) for which a mass that hits at speed v leaves at restitution * v.
-double hunt_crossley(double restitution);
-
 /// Motor: force over rate, piecewise linear, continued by its end segments; times the step's factor.
 struct MotorLaw {
   std::vector<double> rate, force;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "physics/coordinates.hpp"
+#include "physics/impact_loss.hpp"
 
 namespace hilo {
 
@@ -26,9 +27,10 @@ double hunt_crossley(double e) {
 namespace {
 
 struct Stop final : SpringLaw {
-  double lower, upper, k, y, slow;
-  double towards_lower = 0, towards_upper = 0;  // speed at the last accepted state before contact
-  explicit Stop(const StopLaw& s) : lower(s.lower), upper(s.upper), k(s.stiffness), y(hunt_crossley(s.restitution)), slow(s.rest_speed) {}
+  double lower, upper, k, slow;
+  ImpactLoss loss;
+  double towards_lower = 0, towards_upper = 0;  // speed at the last accepted state before contact, and the largest since
+  explicit Stop(const StopLaw& s) : lower(s.lower), upper(s.upper), k(s.stiffness), slow(s.rest_speed), loss(s.restitution) {}
 
   /// Signed depth: positive beyond the upper, negative beyond the lower limit.
   double depth(double x) const { return x > upper ? x - upper : x < lower ? x - lower : 0; }
@@ -45,22 +47,25 @@ struct Stop final : SpringLaw {
     out.s[0] += s, out.D[0][0] += D;
     out.energy += potential(x1[0]);
   }
-  /// The damper multiplies the elastic force by 1 + alpha (rate into the stop), which stays at or above 0: the stop never pulls.
   void viscous(const Values& x0, const Values& x1, const Interval& step, Response& out) const override {
-    if (y == 0) return;
+    if (!loss.any()) return;
     const auto [s, D] = quotient(x0[0], x1[0]);
     if (s == 0) return;
-    const double approach = s > 0 ? towards_upper : towards_lower;
-    const double alpha = std::copysign(y / std::max(approach, slow), s), factor = alpha * (x1[0] - x0[0]) / step.h;
-    const double f = factor > -1 ? s * factor : -s;
+    const double into = std::copysign(1 / step.h, s), rate = into * (x1[0] - x0[0]);
+    const double speed = std::max(s > 0 ? towards_upper : towards_lower, slow), c = loss.factor(rate / speed);
+    const bool between = c > loss.least && c < 1 + loss.y;
+    const double f = s * (c - 1);
     out.s[0] += f;
-    out.D[0][0] += factor > -1 ? D * factor + s * alpha / step.h : -D;
+    out.D[0][0] += D * (c - 1) + (between ? s * loss.y * into / speed : 0);
     out.dissipated += f * (x1[0] - x0[0]);
   }
-  bool needs_rate() const override { return y > 0; }
+  bool needs_rate() const override { return loss.any(); }
   void archive(Archive& a) override { a("stop", towards_lower, towards_upper); }
+  /// What is pressed faster than its contact began begins anew with its own speed.
   void commit(const Values& x, const Values& rate) override {
-    if (depth(x[0]) == 0) (rate[0] > 0 ? towards_upper : towards_lower) = std::abs(rate[0]);
+    const double d = depth(x[0]);
+    double& towards = (d == 0 ? rate[0] : d) > 0 ? towards_upper : towards_lower;
+    towards = d == 0 ? std::abs(rate[0]) : std::max(towards, d > 0 ? rate[0] : -rate[0]);
   }
 };
 

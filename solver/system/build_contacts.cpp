@@ -9,7 +9,6 @@
 
 #include "model/height_grid.hpp"
 #include "physics/contact/obstacle_kinds.hpp"
-#include "physics/coordinates.hpp"
 #include "system/builder.hpp"
 #include "system/contact_entries.hpp"
 #include "system/contacts.hpp"
@@ -91,7 +90,7 @@ BallHeap heap_of(const Entry& e) {
   BallHeap heap;
   heap.name = e.name, heap.loses = e.number("restitution") < 1;
   PointLaw& law = heap.law;
-  law.friction = e.number("friction"), law.loss = hunt_crossley(e.number("restitution")), law.slow = e.number("rest_speed");
+  law.friction = e.number("friction"), law.loss = ImpactLoss(e.number("restitution")), law.slow = e.number("rest_speed");
   if (e.has("modulus")) {
     heap.modulus = e.number("factor") * e.number("modulus");
     heap.told =
@@ -252,7 +251,7 @@ void Builder::add_points_of_body(const Entry& e, const Obstacle& b, int body, Co
   if (ball) pair.shape.reach = b.shape.radius;
   ContactPoint point;
   PointLaw& law = point.law;
-  law.friction = e.number("friction"), law.loss = hunt_crossley(e.number("restitution")), law.slow = e.number("rest_speed");
+  law.friction = e.number("friction"), law.loss = ImpactLoss(e.number("restitution")), law.slow = e.number("rest_speed");
   const double ratio = tangential_ratio(0.3);
   if (e.given("layer")) e.refuse("layer", "a layer is of a surface of facets");
   if (e.has("stiffness")) {
@@ -305,7 +304,7 @@ void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
   const char* const several = "it has rigid and flexible regions, or several bodies";
   std::map<int, double> modulus;  // of regions
   Extremes stiffness, E, depth, times, body;
-  const double loss = hunt_crossley(e.number("restitution"));
+  const ImpactLoss loss(e.number("restitution"));
   std::vector<std::array<std::int64_t, 3>> counts;  // cell and facet in the mesh, points
   comm_.together([&] {
     for (const Facet& f : facets) {

@@ -141,7 +141,7 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
                                                         : 1,
                layer = both_rigid ? e.number("layer") / e.number("modulus") : 0;
   pair.factor = factor;
-  const double loss = hunt_crossley(e.number("restitution"));
+  const ImpactLoss loss(e.number("restitution"));
   double low = 1e300, high = 0;
   for (int s = 0; s < n_sides; ++s)
     for (size_t f = 0; f < behind[s].size(); ++f) {

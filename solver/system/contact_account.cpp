@@ -26,7 +26,7 @@ void Contacts::add_work(const Moment& m, Work& sum) const {
   if (is_start(m.s)) return;
   each_pair([&](const ContactPair& pair) {
     for (const ContactPoint& point : pair.points)
-      if (point.law.friction > 0 || point.law.loss > 0) sum.dissipated += place(pair, point, m.s).force.dissipated;
+      if (point.law.friction > 0 || point.law.loss.any()) sum.dissipated += place(pair, point, m.s).force.dissipated;
   });
   for (const SurfacePair& pair : surfaces) sum.dissipated += pair.dissipated(m.s);
 }
@@ -48,7 +48,7 @@ Contacts::Did Contacts::advance(ContactPair& pair, const Stage& s) {
     point.next = values(at.force.u);
     if (const std::string why = gone_through(pair, point, at.x0, at.x1); !why.empty()) out.why = why;
     if (settles(s)) continue;
-    if (point.law.loss > 0)
+    if (point.law.loss.any())
       point.next_approach = Approach{s.h, point.approach}.after(pair.met_by(point).at(at.x0) - point.law.radius,
                                                                 pair.met_by(point).at(at.x1) - point.law.radius);
     out.dissipated += at.force.dissipated;

@@ -100,7 +100,7 @@ double SurfacePair::energy() const {
 double SurfacePair::dissipated(const Stage& s) const {
   double sum = 0;
   each_listed([&](int k, const SurfacePoint& point) {
-    sum += (point.law.friction > 0 || point.law.loss > 0) && point.now.face >= 0 ? force_of(k, point, s).dissipated : released(point);
+    sum += (point.law.friction > 0 || point.law.loss.any()) && point.now.face >= 0 ? force_of(k, point, s).dissipated : released(point);
   });
   return sum;
 }

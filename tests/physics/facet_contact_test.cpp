@@ -32,10 +32,10 @@ class FacetContact : public ::testing::Test {
   std::mt19937 random_{7};
 };
 
-PointLaw law(double friction, double loss = 0) {
-  return {.k = 3, .hertz = 0, .kt = 2, .friction = friction, .radius = 0, .loss = loss, .slow = 1e-3};
+PointLaw law(double friction, double restitution = 1) {
+  return {.k = 3, .hertz = 0, .kt = 2, .friction = friction, .radius = 0, .loss = ImpactLoss(restitution), .slow = 1e-3};
 }
-constexpr double lost[] = {0, 0.5, 99};  // alpha v of the approach
+constexpr double restitutions[] = {1, 0.7, 0};
 
 /// Forces on the point and the three corners.
 std::array<Vec3, 4> on_all(const FacetForce<double>& f) {
@@ -54,7 +54,7 @@ TEST_F(FacetContact, KeepsEnergyAndMomentaOfAnyMotion) {
         FacetPast past;
         past.gap = k % 3 == 0 ? gap_of(z0) : throw_of(0.05), past.offset = gap_of(z0) - past.gap;
         if (friction > 0) past.bent = {throw_of(0.01), throw_of(0.01)};
-        const PointLaw l = law(friction, lost[k % 4 % 3]);
+        const PointLaw l = law(friction, restitutions[k % 4 % 3]);
         past.approach = 0.1;
         const FacetForce<double> f = over_step(l, z0, z1, past, 0.1);
         const auto F = on_all(f);
@@ -132,7 +132,7 @@ TEST_F(FacetContact, TangentIsTheSlopeOfTheForces) {
         FacetPast past;
         past.gap = gap, past.offset = gap_of(over(x0)) - past.gap, past.bent = {throw_of(0.01), throw_of(0.01)};
         past.approach = 0.1;
-        const PointLaw l = law(friction, k % 3 == 0 ? 0.5 : 0);
+        const PointLaw l = law(friction, k % 3 == 0 ? 0.7 : 1);
         compared += compare_slopes(over(x1), [&](const auto& z) { return over_step(l, over(x0), z, past, 0.1); });
       }
   EXPECT_GT(compared, 3000);

@@ -2,6 +2,7 @@
 // Stops, motors and friction as laws of one coordinate.
 #include "physics/connectors.hpp"
 #include "physics/coordinates.hpp"
+#include "physics/impact_loss.hpp"
 #include "physics/spring.hpp"
 
 namespace hilo::test {
@@ -64,6 +65,22 @@ TEST(Stop, DamperSolvesTheRestitutionEquation) {
   }
   EXPECT_NEAR(hunt_crossley(0.999), 1.5e-3, 2e-6);
   EXPECT_NEAR(hunt_crossley(1 - 1.1e-4) / hunt_crossley(1 - 0.9e-4), 1.1 / 0.9, 2e-3);
+}
+
+// Truth: what was pressed without an impact comes back with 1 - e y of its energy, at any depth and `rest_speed` that is far below the
+// speed; and the way it is pressed in fast is that of an impact, 1 + y times as stiff.
+TEST(Stop, WhatIsPressedWithoutAnImpactComesBack) {
+  for (const double e : {0.9, 0.5, 0.3}) {
+    const double m = 2, k = 1000, d = 0.1, y = hunt_crossley(e), least = 1 - e * y;
+    auto law = make_stop({.lower = 0, .stiffness = k, .restitution = e, .rest_speed = 1e-5});
+    Particle p{m, -d, 0};
+    law->commit({p.x}, {0});
+    for (int i = 0; i < 100000 && p.x < 0; ++i) p.step(*law, 1e-4);
+    EXPECT_NEAR(p.v, std::sqrt(least * k / m) * d, 2e-3 * p.v) << e;
+    Response r;
+    law->elastic({-d}, {-d - 1e-6}, r), law->viscous({-d}, {-d - 1e-6}, {1e-9, 1}, r);
+    EXPECT_NEAR(r.s[0], -(1 + y) * k * (d + 5e-7), 1e-9 * k) << e;
+  }
 }
 
 // Truth: a stop pushes back whatever the rate, never pulls.

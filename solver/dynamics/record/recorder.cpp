@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/record/recorder.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -19,10 +20,16 @@ Recorder::Recorder(const System& system, const Scene& scene, Setup setup)
   if (system.mesh) mesh_.emplace(system, file_, setup_.fields, setup_.skin, setup_.envelope);
 }
 
-void Recorder::first(const State& s, const Ledger& ledger) {
+void Recorder::first(const State& s, const Ledger& ledger, const Stage* there, std::span<const double> lambda) {
   Row row;
   row.t = s.t;
-  row.point = histories_.numbers(s.t, s.q, s.v, ledger, nullptr).end;
+  std::optional<Moment> moment;
+  std::vector<double> shared;
+  if (there && share_) shared = (*share_)(*there, lambda);
+  if (there) moment.emplace(system_, *there, lambda, setup_.redundant ? shared : lambda, there->a);
+  Histories::Numbers numbers = histories_.numbers(s.t, s.q, s.v, ledger, moment ? &*moment : nullptr);
+  row.point = std::move(numbers.end);
+  if (there) there_ = Interval{.mid = std::move(numbers.mid), .a = *there->a};
   row.field = true;
   row.q = s.q, row.v = s.v, row.memory = system_.part<Solids>().memory();
   next_field_ = setup_.interval;
@@ -102,18 +109,20 @@ void Recorder::commit(RunOutput::When when) {
 /// Write every row whose neighbouring steps are known.  Mid values belong to their own time in the step and are interpolated to its ends.
 void Recorder::advance(bool last) {
   const double own = setup_.own_time;
-  const size_t from_right = setup_.alternates ? 3 : 2;  // steps an extrapolation takes
-  const auto ready = [&] {                              // row 0 of the deque
+  const size_t from_right = n_extrapolated();
+  const auto ready = [&] {  // row 0 of the deque
     if (rows_.empty()) return false;
     if (last || setup_.is_static) return true;
-    if (n_written_ == 0) return intervals_.size() >= from_right;
+    if (n_written_ == 0) return there_ || intervals_.size() >= from_right;
     return intervals_.size() >= (rows_[0].jump ? 1 + from_right : own == 1 ? 1 : 2);
   };
   while (ready()) {
     // in the deque, intervals_[0] ends at rows_[0] once the first row is out, else it starts there
     const size_t after = n_written_ > 0;
     const bool has_before = n_written_ > 0 && !intervals_.empty(), has_after = intervals_.size() > after;
-    if (has_before && (own == 1 || has_after) && (!rows_[0].jump || setup_.is_static)) {
+    if (n_written_ == 0 && there_) {
+      write_row({{1, &*there_}});
+    } else if (has_before && (own == 1 || has_after) && (!rows_[0].jump || setup_.is_static)) {
       const double before = (1 - own) * intervals_[0].h, behind = own == 1 ? 1 : own * intervals_[1].h;
       write_row({{behind / (before + behind), &intervals_[0]}, {before / (before + behind), &intervals_[own == 1 ? 0 : 1]}});
     } else if (has_after && !setup_.is_static) {
@@ -131,25 +140,31 @@ void Recorder::advance(bool last) {
     rows_.pop_front();
     if (n_written_ > 0) {
       past_.push_back(std::move(intervals_.front())), intervals_.pop_front();
-      if (past_.size() > 2) past_.pop_front();
+      if (past_.size() >= n_extrapolated()) past_.pop_front();
     }
     ++n_written_;
     if (rows_.empty()) return;
   }
 }
 
-/// Value at the outer end of the first of up to three neighbouring intervals: the line through their own times.  Where they alternate
-/// about the truth, the line through the means at the two nodes further in is free of that: m1 + h1 (m2 - m3)/(h2 + h3).
+/// Value at the outer end of the first of neighbouring intervals: weights by which what is constant or linear in time comes out right, what
+/// alternates from step to step falls out, and what is of the second degree comes out right too.
 std::vector<std::pair<double, const Recorder::Interval*>> Recorder::extrapolated(const std::vector<const Interval*>& m,
                                                                                  bool from_right) const {
-  if (m.size() == 1) return {{1, m[0]}};
-  if (setup_.alternates && m.size() == 3) {
-    const double w = m[0]->h / (m[1]->h + m[2]->h);
-    return {{1, m[0]}, {w, m[1]}, {-w, m[2]}};
-  }
+  const auto n = static_cast<Eigen::Index>(std::min(m.size(), n_extrapolated()));
   const double own = from_right ? setup_.own_time : 1 - setup_.own_time;  // distance from the outer end, in steps
-  const double near = own * m[0]->h, far = m[0]->h + own * m[1]->h, w = near / (far - near);
-  return {{1 + w, m[0]}, {-w, m[1]}};
+  Eigen::MatrixXd A(n, n);
+  double distance = 0;  // in units of the first step
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double h = m[k]->h / m[0]->h, d = distance + own * h;
+    distance += h;
+    for (Eigen::Index i = 0; i < n; ++i)
+      A(i, k) = i < 2 ? std::pow(d, i) : i == 2 && setup_.alternates ? (k % 2 == 0 ? 1 : -1) : d * d;
+  }
+  const Eigen::VectorXd w = A.fullPivLu().solve(Eigen::VectorXd::Unit(n, 0));
+  std::vector<std::pair<double, const Interval*>> out;
+  for (Eigen::Index k = 0; k < n; ++k) out.emplace_back(w[k], m[k]);
+  return out;
 }
 
 /// Row 0 of the deque with the weighted sum of intervals as its mid-step values; zeros where there are none.

@@ -28,11 +28,12 @@ class Recorder {
     bool redundant = false;  // reactions by minimum norm
     double own_time = 0.5;   // where in the step mid values belong
     bool alternates = true;  // whether they alternate about the true ones
+    bool is_smooth = false;  // whether they are smooth from step to step: nothing vibrates between steps or hits
     bool is_static = false;
   };
   Recorder(const System& system, const Scene& scene, Setup setup);
-  /// The state before the first step.
-  void first(const State& s, const Ledger& ledger);
+  /// The state before the first step, and the stage with its multipliers where they are known there.
+  void first(const State& s, const Ledger& ledger, const Stage* there = nullptr, std::span<const double> lambda = {});
   /// Rows not written yet, and how far the file is, between two steps; kept: all of them are safe in the file.  Restored: the file that is
   /// there grows on from these rows, without what it has behind them.
   void archive(Archive& a);
@@ -64,6 +65,8 @@ class Recorder {
   void declare_run(Store& f, const std::vector<double>& resolved) const;
   void declare_bodies(Store& f) const;
   void advance(bool last);
+  /// Steps that an extrapolation takes.
+  size_t n_extrapolated() const { return size_t{2} + setup_.alternates + setup_.is_smooth; }
   std::vector<std::pair<double, const Interval*>> extrapolated(const std::vector<const Interval*>& m, bool from_right) const;
   void write_row(const std::vector<std::pair<double, const Interval*>>& weights);
 
@@ -76,7 +79,8 @@ class Recorder {
   std::optional<MeshPart> mesh_;  // where the scene has a mesh
   std::deque<Row> rows_;
   std::deque<Interval> intervals_;  // interval k starts at row k of rows_
-  std::deque<Interval> past_;       // the two intervals before intervals_[0], for the last row
+  std::optional<Interval> there_;   // what is known at the first row
+  std::deque<Interval> past_;       // the intervals before intervals_[0], for the last row
   std::int64_t n_written_ = 0;      // rows in the file
   double last_t_ = 0, next_field_ = 0;
 };

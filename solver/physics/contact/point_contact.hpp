@@ -5,13 +5,14 @@
 //   D = n + (phi1 - phi0 - n.dxi)/|dxi|^2 dxi,   D.dxi = phi1 - phi0;   f = s D,   s = (V1 - V0)/(phi1 - phi0)
 // so that a step keeps energy and momentum at any length [gonzalez-1996].  Friction: u is how far a bristle of stiffness kt is bent,
 //   u1 = u0 + sigma, shortened to mu p/kt,   f = kt u1,   D = kt u1.sigma - kt (|u1|^2 - |u0|^2)/2 >= 0
-// Restitution: the pressure is c s, c = 1 + alpha times the speed of approach, at least zero, as of stops (physics/stop): what it takes is
-// above zero in and out, and it acts along D, so that momenta stay.  The bristle is stiffened with the pressure, to q^2 kt with q =
+// Restitution: the pressure is c s, c = 1 + alpha times the speed of approach within its limits (`ImpactLoss`): what it takes is above zero
+// in and out, and it acts along D, so that momenta stay.  The bristle is stiffened with the pressure, to q^2 kt with q =
 // sqrt(c):
 //   u1 = u0 + q sigma, shortened to mu p/(q kt),   f = q kt u1,   D = kt u1.(q sigma) - kt (|u1|^2 - |u0|^2)/2 >= 0
 // u^2 kt/2 is what it stores at any q, which is of the step alone: a change of q neither adds nor takes any.
 #pragma once
 #include "physics/contact/distance.hpp"
+#include "physics/impact_loss.hpp"
 
 namespace hilo {
 
@@ -22,7 +23,7 @@ struct PointLaw {
   double kt = 0;        // [N/m]
   double friction = 0;  // coefficient
   double radius = 0;    // of the ball that the point is the centre of [m]
-  double loss = 0;      // alpha v of the damper that keeps what restitution asks (`hunt_crossley`); 0: none is lost
+  ImpactLoss loss;      // of restitution
   double slow = 0;      // speed below which no larger share is lost [m/s]
   bool fixed = false;   // tangents without the change of mu p
   double potential(double gap) const;
@@ -72,16 +73,12 @@ struct Approach {
   }
 };
 
-/// What restitution multiplies the pressure p of a step from gap g0 to g1 by: c = 1 + loss rate/speed, the quotient at most 1, c at least
-/// zero.  What comes faster than the contact began, as a part at rest that is hit, begins anew with its own speed.
+/// What restitution multiplies the pressure p of a step from gap g0 to g1 by.  What comes faster than the contact began, as a part at rest
+/// that is hit, begins anew with its own speed.
 template <class T>
 T damping(const PointLaw& law, const T& p, double g0, const T& g1, const Approach& approach) {
-  if (law.loss == 0 || approach.h <= 0 || !(value(p) > 0)) return T(1.0);
-  const T rate = (T(g0) - g1) / T(approach.h);
-  const double speed = std::max(g0 > 0 ? 0. : approach.speed, law.slow);
-  if (value(rate) >= speed) return T(1 + law.loss);
-  const T factor = T(law.loss / speed) * rate;
-  return value(factor) > -1 ? T(1.0) + factor : T(0.0);
+  if (!law.loss.any() || approach.h <= 0 || !(value(p) > 0)) return T(1.0);
+  return law.loss.factor((T(g0) - g1) / T(approach.h * std::max(g0 > 0 ? 0. : approach.speed, law.slow)));
 }
 
 /// q of the bristle, sqrt(c); below 1 what goes on from there straight, so that it stays above zero.

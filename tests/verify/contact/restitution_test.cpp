@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "dynamics/kept_run.hpp"
+#include "physics/impact_loss.hpp"
 #include "succeeded.hpp"
 #include "verify/block_mesh.hpp"
 #include "verify/contact/collision.hpp"
@@ -143,6 +144,17 @@ TEST(Restitution, OfSurfacesIsAsAsked) {
     const auto x = fallen.history("probe/a");
     EXPECT_NEAR(x(x.rows() - 1, 5), e, 0.01);
   }
+}
+
+// Truth: pressed by 50 N and let go, it leaves with 1 - e y of what was stored.
+TEST(Restitution, WhatWasPressedComesBack) {
+  const Place c;
+  const double e = 0.9, y = hunt_crossley(e), k = 1000, d = 0.05;
+  const Results r = c.solved(ball(0.1, 0, 0, "stiffness = 1000\nrestitution = 0.9", 0.3, 1e-4) +
+                             "start = \"equilibrium\"\n[[load]]\nkind = \"force\"\nname = \"f\"\non = \"ball\"\nforce = [0, 0, -50]\n"
+                             "history = {t = [0, 0.01, 0.0101, 5], value = [1, 1, 0, 0]}\n");
+  const auto x = r.history("probe/p");
+  EXPECT_NEAR(x(x.rows() - 1, 5), std::sqrt((1 - e * y) * k) * d, 5e-3);
 }
 
 // Truth: a ball set down comes to rest at depth m g/k: restitution damps what friction and stiffness do not.
