@@ -84,12 +84,14 @@ Redundancy choose_rows(System& system, const Config& q, double dependent) {
       Active active = c.active();
       active[r] = false;
       c.set_active(active);
+      report.undetermined.push_back(c.row() + r);
       std::vector<int> others;
       const bool drives = is_drive(system, row);
       bool on_drives = false;
       for (const auto& [i, factor] : found.depends[k - found.rank]) {
         if (std::abs(factor) <= 1e-6) continue;
         const auto other = all.rows[group[found.order[i]]];
+        report.undetermined.push_back(constraints[other.first]->row() + other.second);
         if (other.first != one) others.push_back(other.first);
         on_drives = on_drives || (drives && is_drive(system, other));
       }
@@ -100,6 +102,7 @@ Redundancy choose_rows(System& system, const Config& q, double dependent) {
           others.empty() ? fmt::format(" (depends on the {}'s own rows)", c.section()) : fmt::format(" (depends on {})", names)));
     }
   }
+  std::ranges::sort(report.undetermined);
   return report;
 }
 

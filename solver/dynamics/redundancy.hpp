@@ -18,6 +18,7 @@ struct Redundancy {
     std::string by;  // those that leave its drive nothing to drive
   };
   std::vector<Held> held;
+  std::vector<int> undetermined;  // multipliers of rows that were dropped and of those that they depend on, by place in lambda, rising
   // A singular position (a mechanism drawn flat, a dead point) has fewer independent rows than the poses beside it:
   std::vector<Active> at_pose;  // rows independent there, for solves at that very pose; empty where it is not singular
   int rank_at_pose = 0;

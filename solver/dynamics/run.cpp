@@ -13,6 +13,7 @@
 #include "dynamics/profile.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start.hpp"
+#include "system/joints.hpp"
 #include "system/modal_damping.hpp"
 #include "system/revising.hpp"
 #include "system/springs.hpp"
@@ -222,11 +223,32 @@ class Run {
       for (size_t k = 0; k < std::min(shown, redundancy.dropped.size()); ++k) fmt::print(stderr, "  {}\n", redundancy.dropped[k]);
       if (redundancy.dropped.size() > shown) fmt::print(stderr, "  and {} more\n", redundancy.dropped.size() - shown);
     }
+    if (!is_static()) warn_of_shared_friction();
     if (run_.talk && redundancy.singular())
       fmt::print(stderr, "a singular position: {} more joint rows depend on others at the start alone\n",
                  redundancy.rank - redundancy.rank_at_pose);
     state.lambda.assign(3 * system.n_joint_blocks(), 0.0);
     if (!is_static()) find_modal_damping(system, state.q);
+  }
+
+  /// Where the rows that press friction are redundant, the motion depends on which of them were kept.
+  void warn_of_shared_friction() const {
+    if (!run_.talk) return;
+    const Joints& joints = run_.system.part<Joints>();
+    for (const Spring& c : run_.system.part<Springs>().list) {
+      if (c.pressing.joint < 0) continue;
+      const auto is_shared = [&](int r) {
+        return std::ranges::binary_search(run_.redundancy.undetermined, joints.row(static_cast<size_t>(c.pressing.joint)) + r);
+      };
+      if (std::ranges::none_of(c.pressing.rows, is_shared)) continue;
+      const std::string& joint = joints.list[c.pressing.joint].name;
+      for (const Entry& e : run_.scene.entries("friction"))
+        if (e.text("joint") == joint)
+          warn(e.where("joint"),
+               fmt::format("{}: how much of the force joint \"{}\" takes is not determined, as its rows are redundant: friction has that of the "
+                           "rows that were kept, which may be nothing or all (other joints; or reaction = false and a preload)",
+                           e.label(), joint));
+    }
   }
 
   void open_recorder() {

@@ -51,7 +51,7 @@ struct Stop final : SpringLaw {
     if (!loss.any()) return;
     const auto [s, D] = quotient(x0[0], x1[0]);
     if (s == 0) return;
-    const double into = std::copysign(1 / step.h, s), rate = into * (x1[0] - x0[0]);
+    const double into = std::copysign(1, s) / step.h, rate = into * (x1[0] - x0[0]);
     const double speed = std::max(s > 0 ? towards_upper : towards_lower, slow), c = loss.factor(rate / speed);
     const bool between = c > loss.least && c < 1 + loss.y;
     const double f = s * (c - 1);

@@ -92,6 +92,43 @@ TEST(Friction, TopInABallJointSpinsDownAlongALine) {
     EXPECT_NEAR(x.row(i).segment(3, 3).norm(), 0.1 * (12 - 0.2 * 2 * g * 0.01 / 0.01 * t[i]), 1e-4);
 }
 
+// Two equal bearings of a shaft bear half of its weight each, and only their rows say how much of it friction gets: told by name.
+TEST(Friction, OfRedundantJointsIsTold) {
+  const Workplace w;
+  w.write("scene.toml", R"(gravity = [0, 0, -10]
+[[body]]
+name = "d"
+mass = 2
+com = [0, 0, 0]
+inertia = [0.1, 0.1, 0.1]
+[[joint]]
+kind = "revolute"
+name = "A"
+b = "d"
+at = [0.5, 0, 0]
+axis = [1, 0, 0]
+[[joint]]
+kind = "revolute"
+name = "B"
+b = "d"
+at = [-0.5, 0, 0]
+axis = [1, 0, 0]
+[[friction]]
+name = "f"
+joint = "B"
+coefficient = 0.1
+radius = 0.1
+[time]
+end = 0.1
+step = 0.01
+)");
+  const std::string told = "scene.toml:21:1: friction \"f\": how much of the force joint \"B\" takes is not determined";
+  const Ran both = w.run("hilo-solve scene.toml -o run.h5");
+  EXPECT_EQ(both.exit, 0) << both.err;
+  EXPECT_NE(both.err.find(told), std::string::npos) << both.err;
+  EXPECT_EQ(w.run("hilo-solve scene.toml -o run.h5 --set friction.f.reaction=false --set friction.f.preload=10").err.find(told), std::string::npos);
+}
+
 TEST(Friction, MistakesAreNamed) {
   const Case c("friction");
   c.expect_mistake("'friction.rub.joint=\"giude\"'", "did you mean \"guide\"");

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The first and the last row of what belongs to the inside of steps: forces of an unbalanced rotor.
+#include "verify/verify.hpp"
+
+namespace hilo::test::end_rows_test {
+namespace {
+
+// Truth: m r w^2 = 1000 N throughout, in 20 steps a turn.  The first row is that of the start; the last one of methods whose forces belong to
+// the middle of steps is extrapolated along a parabola, which is off by the fourth order in size.
+TEST(EndRows, OfAnUnbalancedRotor) {
+  const Workplace w;
+  w.write("scene.toml", R"([[body]]
+name = "a"
+mass = 1
+com = [0.1, 0, 0]
+inertia = [0.1, 0.1, 0.1]
+[[joint]]
+kind = "revolute"
+name = "j"
+b = "a"
+at = [0, 0, 0]
+axis = [0, 0, 1]
+spin = 100
+[time]
+end = 0.0628318530717958
+step = 0.003141592653589793
+)");
+  const std::vector<std::pair<std::string, double>> methods{
+      {"gauss", 1e-3}, {"energy-momentum", 16}, {"mid-point", 16}, {"radau", 8}, {"generalized-alpha", 40}};
+  for (const auto& [method, last] : methods) {
+    succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 --set 'time.integrator=\"" + method + "\"'"));
+    const auto f = Results(w / "run.h5").history("joint/j");
+    EXPECT_NEAR(f.row(0).head(3).norm(), 1000, 1e-6) << method;
+    EXPECT_NEAR(f.row(f.rows() - 1).head(3).norm(), 1000, last) << method;
+  }
+}
+
+}  // namespace
+}  // namespace hilo::test::end_rows_test
