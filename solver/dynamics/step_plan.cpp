@@ -29,6 +29,7 @@ constexpr double many_steps = 5000;   // of second order: gauss is tried first,
 constexpr double dear = 10;           // a step of it costs as much as this many of them: so long as it may be cheaper
 constexpr double most_steps = 100;    // of a pass, over those of the first by the same method
 constexpr double starting_steps = 6;  // until steps have grown to the longest
+constexpr long fewest_steps = 8;      // of a run, which begins with sixteenths of it
 constexpr double least_step = 1e-14;  // of the length: smaller local errors of second order are round-off
 constexpr double least_share = 1e-7;  // of the length: demands of methods above second order below it ask for round-off
 
@@ -147,6 +148,7 @@ std::string why_better(const StepPlan& plan, const RunReport& report, const Erro
   if (estimate.largest() < 1e-12 * length) return "the method makes no error in this motion but rounding";
   if (estimate.largest() >= much_better * plan.asked)
     return fmt::format("it was {:.2g} m at t = {:.3g} s and is smaller at the end", estimate.largest(), estimate.largest_t());
+  if (report.steps <= fewest_steps) return "these are the fewest steps that a run takes: it begins with sixteenths of its time";
   if (static_cast<double>(report.steps) <= 1.5 * time.number("end") / longest_step(time) + starting_steps)
     return "steps are as long as time.step allows";
   if (order > 2 && plan.passes.size() > 1 && plan.passes[plan.passes.size() - 2].method == plan.now().method)
