@@ -245,9 +245,10 @@ class Run {
       for (const Entry& e : run_.scene.entries("friction"))
         if (e.text("joint") == joint)
           warn(e.where("joint"),
-               fmt::format("{}: how much of the force joint \"{}\" takes is not determined, as its rows are redundant: friction has that of the "
-                           "rows that were kept, which may be nothing or all (other joints; or reaction = false and a preload)",
-                           e.label(), joint));
+               fmt::format(
+                   "{}: how much of the force joint \"{}\" takes is not determined, as its rows are redundant: friction has that of the "
+                   "rows that were kept, which may be nothing or all (other joints; or reaction = false and a preload)",
+                   e.label(), joint));
     }
   }
 

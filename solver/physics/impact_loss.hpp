@@ -9,7 +9,7 @@ namespace hilo {
 
 /// y = alpha v of the damper f = k d (1 + alpha dd/dt) for which a mass that hits at speed v leaves at restitution * v.
 double hunt_crossley(double restitution);
-/// What restitution multiplies the elastic force by: 1 + y rate/v, of an impact from 1 + y as it begins to 1 - restitution y as it ends.  It
+/// What restitution multiplies the elastic force by: 1 + y rate/v, of an impact from 1 + y as it begins to 1 - restitution y as it ends. It
 /// is never outside, so that what was pressed without an impact comes back as what leaves after one.
 struct ImpactLoss {
   double y = 0, least = 1;

@@ -35,8 +35,8 @@ bool Builder::is_of(std::int64_t cell, int linear_body) const {
   return region.fidelity == Fidelity::linear && region.body == linear_body;
 }
 
-/// Nodes that have modes of their own, as those that ties hold: of the sets that the scene names, else of what contacts may touch.  Few: many
-/// would move by smooth functions, and do not give way where they are pressed in.  Collective.
+/// Nodes that have modes of their own, as those that ties hold: of the sets that the scene names, else of what contacts may touch.  Few:
+/// many would move by smooth functions, and do not give way where they are pressed in.  Collective.
 void Builder::add_interfaces(int body, RegionParcel& parcel) const {
   const Mesh& mesh = mesh_->mesh;
   struct Mark {
@@ -59,7 +59,8 @@ void Builder::add_interfaces(int body, RegionParcel& parcel) const {
                "leave shapes or interface out");
     for (const std::string& name : e.texts("interface")) {
       const auto set = mesh.facet_sets.find(name);
-      if (set == mesh.facet_sets.end()) e.refuse("interface", fmt::format("no set of facets \"{}\"", name), suggest(name, mesh.all_names()));
+      if (set == mesh.facet_sets.end())
+        e.refuse("interface", fmt::format("no set of facets \"{}\"", name), suggest(name, mesh.all_names()));
       names.push_back(fmt::format("set \"{}\"", name));
       const size_t before = marks.size();
       for (const Facet& f : set->second)
@@ -90,9 +91,10 @@ void Builder::add_interfaces(int body, RegionParcel& parcel) const {
   }
   if (!chosen && (all.size() > most_free || parcel.stiffening)) {
     if (!all.empty())
-      warn(parcel.where, fmt::format("linear region \"{}\": contacts may touch {} of its nodes, which move by its modes alone: it gives way too "
-                                     "little where it is pressed in (give the sets of facets that are touched as interface{})",
-                                     out_->bodies[body].name, all.size(), parcel.stiffening ? ", without stiffening" : ""));
+      warn(parcel.where,
+           fmt::format("linear region \"{}\": contacts may touch {} of its nodes, which move by its modes alone: it gives way too "
+                       "little where it is pressed in (give the sets of facets that are touched as interface{})",
+                       out_->bodies[body].name, all.size(), parcel.stiffening ? ", without stiffening" : ""));
     return;
   }
   for (size_t k = 0; k < names.size(); ++k)

@@ -158,8 +158,7 @@ std::vector<std::pair<double, const Recorder::Interval*>> Recorder::extrapolated
   for (Eigen::Index k = 0; k < n; ++k) {
     const double h = m[k]->h / m[0]->h, d = distance + own * h;
     distance += h;
-    for (Eigen::Index i = 0; i < n; ++i)
-      A(i, k) = i < 2 ? std::pow(d, i) : i == 2 && setup_.alternates ? (k % 2 == 0 ? 1 : -1) : d * d;
+    for (Eigen::Index i = 0; i < n; ++i) A(i, k) = i < 2 ? std::pow(d, i) : i == 2 && setup_.alternates ? (k % 2 == 0 ? 1 : -1) : d * d;
   }
   const Eigen::VectorXd w = A.fullPivLu().solve(Eigen::VectorXd::Unit(n, 0));
   std::vector<std::pair<double, const Interval*>> out;

@@ -57,7 +57,8 @@ history = {t = [0, 1], value = [0, 1]}
 analysis = "static"
 steps = 1
 end = 1
-)" << (two ? R"(
+)"
+                                        << (two ? R"(
 [set.foot]
 kind = "box"
 of = ["up"]
@@ -79,7 +80,7 @@ name = "c"
 a = "spot"
 b = "foot"
 )"
-                   : R"(
+                                                : R"(
 [[obstacle]]
 kind = "sphere"
 name = "ball"

@@ -126,7 +126,8 @@ step = 0.01
   const Ran both = w.run("hilo-solve scene.toml -o run.h5");
   EXPECT_EQ(both.exit, 0) << both.err;
   EXPECT_NE(both.err.find(told), std::string::npos) << both.err;
-  EXPECT_EQ(w.run("hilo-solve scene.toml -o run.h5 --set friction.f.reaction=false --set friction.f.preload=10").err.find(told), std::string::npos);
+  EXPECT_EQ(w.run("hilo-solve scene.toml -o run.h5 --set friction.f.reaction=false --set friction.f.preload=10").err.find(told),
+            std::string::npos);
 }
 
 TEST(Friction, MistakesAreNamed) {

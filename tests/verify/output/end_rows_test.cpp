@@ -5,8 +5,8 @@
 namespace hilo::test::end_rows_test {
 namespace {
 
-// Truth: m r w^2 = 1000 N throughout, in 20 steps a turn.  The first row is that of the start; the last one of methods whose forces belong to
-// the middle of steps is extrapolated along a parabola, which is off by the fourth order in size.
+// Truth: m r w^2 = 1000 N throughout, in 20 steps a turn.  The first row is that of the start; the last one of methods whose forces belong
+// to the middle of steps is extrapolated along a parabola, which is off by the fourth order in size.
 TEST(EndRows, OfAnUnbalancedRotor) {
   const Workplace w;
   w.write("scene.toml", R"([[body]]
