@@ -154,11 +154,11 @@ class DynamicSteps final : public Steps {
     if (companion_ && companion_->has_begun()) companion_->restart(state, system.traits().is_driven, 0.05 * step_);
   }
 
-  /// What is smooth has its forces at the start as they are there; of what vibrates or hits they come from the steps behind.
+  /// Rigid parts have their forces at the start as they are there; of what may vibrate between steps they come from the steps behind.
   void record_start() {
     Config a;
     std::vector<double> lambda;
-    const bool known = run_.is_smooth && !run_.redundancy.singular() && has_accelerations(a, lambda);
+    const bool known = run_.is_rigid && !run_.redundancy.singular() && has_accelerations(a, lambda);
     const Instant there(run_.state, std::move(a));
     run_.recorder->first(run_.state, run_.audit->ledger(), known ? &there.stage : nullptr, lambda);
   }

@@ -13,7 +13,6 @@
 #include "dynamics/profile.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start.hpp"
-#include "system/joints.hpp"
 #include "system/modal_damping.hpp"
 #include "system/revising.hpp"
 #include "system/springs.hpp"
@@ -234,22 +233,13 @@ class Run {
   /// Where the rows that press friction are redundant, the motion depends on which of them were kept.
   void warn_of_shared_friction() const {
     if (!run_.talk) return;
-    const Joints& joints = run_.system.part<Joints>();
-    for (const Spring& c : run_.system.part<Springs>().list) {
-      if (c.pressing.joint < 0) continue;
-      const auto is_shared = [&](int r) {
-        return std::ranges::binary_search(run_.redundancy.undetermined, joints.row(static_cast<size_t>(c.pressing.joint)) + r);
-      };
-      if (std::ranges::none_of(c.pressing.rows, is_shared)) continue;
-      const std::string& joint = joints.list[c.pressing.joint].name;
-      for (const Entry& e : run_.scene.entries("friction"))
-        if (e.text("joint") == joint)
-          warn(e.where("joint"),
-               fmt::format(
-                   "{}: how much of the force joint \"{}\" takes is not determined, as its rows are redundant: friction has that of the "
-                   "rows that were kept, which may be nothing or all (other joints; or reaction = false and a preload)",
-                   e.label(), joint));
-    }
+    const std::vector<std::string> joints = pressed_by(run_.system, run_.redundancy.undetermined);
+    for (const Entry& e : run_.scene.entries("friction"))
+      if (std::ranges::find(joints, e.text("joint")) != joints.end())
+        warn(e.where("joint"),
+             fmt::format("{}: how much of the force joint \"{}\" takes is not determined, as its rows are redundant: friction has that of "
+                         "the rows that were kept, which may be nothing or all (other joints; or reaction = false and a preload)",
+                         e.label(), e.text("joint")));
   }
 
   void open_recorder() {
@@ -273,8 +263,8 @@ class Run {
     setup.own_time = in_time ? run_.integrator->own_time() : 1;
     setup.alternates = in_time && run_.integrator->alternates();
     const System& system = run_.system;
-    run_.is_smooth = in_time && !system.traits().deforms && system.modes.empty() && !touching(system) && springs_are_smooth(system);
-    setup.is_smooth = run_.is_smooth, setup.is_static = !in_time;
+    run_.is_rigid = in_time && !system.traits().deforms && system.modes.empty() && !touching(system);
+    setup.is_smooth = run_.is_rigid && springs_are_smooth(system), setup.is_static = !in_time;
     run_.recorder = std::make_unique<Recorder>(run_.system, run_.scene, std::move(setup));
   }
 

@@ -33,7 +33,7 @@ struct RunParts {
   const RunOptions& options;
   Analysis analysis;
   bool talk;
-  bool is_smooth = false;             // in time: nothing vibrates between steps or hits
+  bool is_rigid = false;              // in time: nothing bends or touches
   std::string energy_unchecked = {};  // why the audit does not check the balance of energy, or ""
   NewtonOptions newton = {};
   int max_cuts = 8;

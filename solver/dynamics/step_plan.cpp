@@ -148,9 +148,9 @@ std::string why_better(const StepPlan& plan, const RunReport& report, const Erro
   if (estimate.largest() < 1e-12 * length) return "the method makes no error in this motion but rounding";
   if (estimate.largest() >= much_better * plan.asked)
     return fmt::format("it was {:.2g} m at t = {:.3g} s and is smaller at the end", estimate.largest(), estimate.largest_t());
-  if (report.steps <= fewest_steps) return "these are the fewest steps that a run takes: it begins with sixteenths of its time";
   if (static_cast<double>(report.steps) <= 1.5 * time.number("end") / longest_step(time) + starting_steps)
     return "steps are as long as time.step allows";
+  if (report.steps <= fewest_steps) return "these are the fewest steps that a run takes: it begins with sixteenths of its time";
   if (order > 2 && plan.passes.size() > 1 && plan.passes[plan.passes.size() - 2].method == plan.now().method)
     return fmt::format("steps by {} that resolve the motion are this good, and {} longer ones did not resolve it", plan.now().method,
                        plan.passes[plan.passes.size() - 2].steps);

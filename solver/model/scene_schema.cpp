@@ -56,8 +56,7 @@ std::vector<KindSchema> make_schema() {
          at_least(0)},
         {"up_to", number, "Hz", "", "vibration modes up to this frequency, but at least four; absent: 0.1 divided by the step", above(0)},
         {"interface", texts, "", "",
-         "sets of facets of a linear region whose nodes have modes of their own, or \"none\"; absent: what contacts may touch, up to 66 "
-         "nodes"},
+         "sets of facets of a linear region whose nodes have modes of their own, besides up to 66 that contacts may touch; \"none\": none"},
         {"shapes", text, "", "",
          "CSV of the modes of a linear region, in place of those that hilo finds: node, then x, y, z of each shape [length]"},
         {"shell", boolean, "", "false", "its hex8 cells, in one or more layers, are solid-shells: thin plates and walls that do not lock"},

@@ -13,7 +13,7 @@
 namespace hilo {
 
 double hunt_crossley(double e) {
-  e = std::max(e, 0.01);  // y tends to 1/e: what rebounds with less than a hundredth of its speed is taken to stay
+  e = std::max(e, least_restitution);  // y tends to 1/e
   if (e > 1 - 1e-4) return 1.5 * (1 - e);
   const auto f = [e](double y) { return y * (1 + e) - std::log1p(y) + std::log1p(-e * y); };
   double low = 0.5 * (1 - e * e) / (1 + e * e * e), high = 1 / e;  // f > 0 below the root: f = (1 - e^2) y^2/2 - (1 + e^3) y^3/3 + ...

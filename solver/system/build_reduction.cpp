@@ -35,70 +35,81 @@ bool Builder::is_of(std::int64_t cell, int linear_body) const {
   return region.fidelity == Fidelity::linear && region.body == linear_body;
 }
 
-/// Nodes that have modes of their own, as those that ties hold: of the sets that the scene names, else of what contacts may touch.  Few:
+/// Nodes that have modes of their own, as those that ties hold: of the sets that the scene names, and what contacts may touch besides. Few:
 /// many would move by smooth functions, and do not give way where they are pressed in.  Collective.
 void Builder::add_interfaces(int body, RegionParcel& parcel) const {
   const Mesh& mesh = mesh_->mesh;
+  struct List {
+    std::string name;
+    bool of_contact;
+    std::set<std::int64_t> rows = {};
+  };
   struct Mark {
     std::int64_t list, row;
   };
+  std::vector<List> lists;
   std::vector<Mark> marks;
-  std::vector<std::string> names;
   const auto mark = [&](std::int64_t node) {
     const bool of_block = !mesh.block.empty() && mesh.block[node] >= 0;
-    if (out_->follower[node] == body && !of_block) marks.push_back({std::ssize(names) - 1, mesh_->node_global[node]});
+    if (out_->follower[node] == body && !of_block) marks.push_back({std::ssize(lists) - 1, mesh_->node_global[node]});
   };
-  bool chosen = false;
-  for (const Region& region : regions_) {
-    if (region.fidelity != Fidelity::linear || region.body != body || !region.interface) continue;
-    chosen = true;
-    const Entry& e = *region.interface;
-    if (e.texts("interface") == std::vector<std::string>{"none"}) continue;
-    if (!parcel.shapes.empty())
-      e.refuse("interface", fmt::format("region \"{}\" has shapes of a file: no node has modes of its own", region.name),
-               "leave shapes or interface out");
-    for (const std::string& name : e.texts("interface")) {
+  std::vector<char> may(regions_.size(), 0);  // have modes of what contacts may touch
+  for (size_t r = 0; r < regions_.size(); ++r) {
+    const Region& region = regions_[r];
+    if (region.fidelity != Fidelity::linear || region.body != body) continue;
+    const std::vector<std::string> named = region.interface ? region.interface->texts("interface") : std::vector<std::string>{};
+    may[r] = parcel.shapes.empty() && named != std::vector<std::string>{"none"};
+    if (named.empty() || !may[r]) {
+      if (!named.empty() && named.front() != "none")
+        region.interface->refuse("interface", fmt::format("region \"{}\" has shapes of a file: no node has modes of its own", region.name),
+                                 "leave shapes or interface out");
+      continue;
+    }
+    for (const std::string& name : named) {
       const auto set = mesh.facet_sets.find(name);
       if (set == mesh.facet_sets.end())
-        e.refuse("interface", fmt::format("no set of facets \"{}\"", name), suggest(name, mesh.all_names()));
-      names.push_back(fmt::format("set \"{}\"", name));
+        region.interface->refuse("interface", fmt::format("no set of facets \"{}\"", name), suggest(name, mesh.all_names()));
+      lists.push_back({fmt::format("set \"{}\"", name), false});
       const size_t before = marks.size();
       for (const Facet& f : set->second)
         if (is_of(f.cell, body))
           for (const std::int64_t i : mesh.facet_nodes(f)) mark(i);
       if (comm_.sum(static_cast<double>(marks.size() - before)) == 0)
-        e.refuse("interface", fmt::format("set \"{}\" has no facets of region \"{}\"", name, region.name));
+        region.interface->refuse("interface", fmt::format("set \"{}\" has no facets of region \"{}\"", name, region.name));
     }
   }
-  const Contacts& contacts = out_->part<Contacts>();
-  if (!chosen && parcel.shapes.empty()) {
-    for (const ContactPair& pair : contacts.list) {
-      names.push_back(fmt::format("contact \"{}\"", pair.name));
-      for (const ContactPoint& point : pair.points)
-        for (const int i : point.nodes) mark(i);
-    }
-    for (const SurfacePair& pair : contacts.surfaces) {
-      names.push_back(fmt::format("contact \"{}\"", pair.name));
-      for (const ContactSurface& side : pair.side)
-        for (const ContactSurface::Face& face : side.faces)
-          for (int a = 0; a < face.n; ++a) mark(face.node[a]);
-    }
+  std::vector<char> asked(mesh.X.size(), 0);
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
+    if (may[mesh.region[e]])
+      for (const std::int64_t i : mesh.cell(e)) asked[i] = 1;
+  for (const TouchedNodes& touched : touched_nodes(*out_)) {
+    lists.push_back({fmt::format("contact \"{}\"", touched.contact), true});
+    for (const int i : touched.nodes)
+      if (asked[i]) mark(i);
   }
-  std::set<std::int64_t> all;
-  std::vector<std::set<std::int64_t>> lists(names.size());
-  for (const Mark& m : comm_.to_first(marks)) {
-    all.insert(m.row), lists[static_cast<size_t>(m.list)].insert(m.row);
+  for (const Mark& m : comm_.to_first(marks)) lists[m.list].rows.insert(m.row);
+  std::set<std::int64_t> named, touched, told;
+  for (const List& list : lists)
+    if (!list.of_contact && list.rows.size() <= most_free) named.insert(list.rows.begin(), list.rows.end());
+  const auto is_named = [&](std::int64_t row) { return named.contains(row); };
+  for (List& list : lists) {
+    if (!list.of_contact) continue;
+    const bool where_named = std::ranges::any_of(list.rows, is_named);
+    std::erase_if(list.rows, is_named);
+    touched.insert(list.rows.begin(), list.rows.end());
+    if (!where_named) told.insert(list.rows.begin(), list.rows.end());
   }
-  if (!chosen && (all.size() > most_free || parcel.stiffening)) {
-    if (!all.empty())
+  if (touched.size() > most_free || parcel.stiffening) {
+    if (!told.empty())
       warn(parcel.where,
            fmt::format("linear region \"{}\": contacts may touch {} of its nodes, which move by its modes alone: it gives way too "
                        "little where it is pressed in (give the sets of facets that are touched as interface{})",
-                       out_->bodies[body].name, all.size(), parcel.stiffening ? ", without stiffening" : ""));
-    return;
+                       out_->bodies[body].name, told.size(), parcel.stiffening ? ", without stiffening" : ""));
+    std::erase_if(lists, [](const List& list) { return list.of_contact; });
   }
-  for (size_t k = 0; k < names.size(); ++k)
-    if (!lists[k].empty()) parcel.tied.emplace_back(names[k], std::vector(lists[k].begin(), lists[k].end()));
+  std::ranges::stable_sort(lists, {}, [](const List& list) { return list.rows.size(); });  // many move together: few come first
+  for (const List& list : lists)
+    if (!list.rows.empty()) parcel.tied.emplace_back(list.name, std::vector(list.rows.begin(), list.rows.end()));
 }
 
 /// Collective.

@@ -285,4 +285,20 @@ Meeting what_may_meet(const System& system) {
   return out;
 }
 
+std::vector<TouchedNodes> touched_nodes(const System& system) {
+  const Contacts& contacts = system.part<Contacts>();
+  std::vector<TouchedNodes> out;
+  for (const ContactPair& pair : contacts.list) {
+    out.push_back({pair.name, {}});
+    for (const ContactPoint& point : pair.points) out.back().nodes.insert(out.back().nodes.end(), point.nodes.begin(), point.nodes.end());
+  }
+  for (const SurfacePair& pair : contacts.surfaces) {
+    out.push_back({pair.name, {}});
+    for (const ContactSurface& side : pair.side)
+      for (const ContactSurface::Face& face : side.faces)
+        out.back().nodes.insert(out.back().nodes.end(), face.node.begin(), face.node.begin() + face.n);
+  }
+  return out;
+}
+
 }  // namespace hilo

@@ -14,6 +14,15 @@ namespace hilo {
 /// Of the stiffness of facets of regions that bend, in load steps.
 constexpr double static_factor = 100;
 
+/// Nodes of regions that bend, of a contact: on each rank those of the facets that it evaluates, local.
+struct TouchedNodes {
+  std::string contact;
+  std::vector<int> nodes;
+};
+class System;
+/// Of each contact, in the same order on all ranks.
+std::vector<TouchedNodes> touched_nodes(const System& system);
+
 class Contacts final : public Contribution, public Equations, public Stateful, public Observer, public Revising, public Touching {
  public:
   Contacts(const Points& points, bool is_static) : points_(points), is_static_(is_static) {}

@@ -172,4 +172,16 @@ bool springs_are_smooth(const System& system) {
   return std::ranges::all_of(system.part<Springs>().list, [](const Spring& c) { return c.law->is_smooth(); });
 }
 
+std::vector<std::string> pressed_by(const System& system, std::span<const int> places) {
+  const Joints& joints = system.part<Joints>();
+  std::vector<std::string> out;
+  for (const Spring& c : system.part<Springs>().list) {
+    if (c.pressing.joint < 0) continue;
+    const int first = joints.row(static_cast<size_t>(c.pressing.joint));
+    if (std::ranges::any_of(c.pressing.rows, [&](int r) { return std::ranges::binary_search(places, first + r); }))
+      out.push_back(joints.list[c.pressing.joint].name);
+  }
+  return out;
+}
+
 }  // namespace hilo

@@ -51,6 +51,8 @@ void spring_elastic(const Spring& c, const Stage& s, Response& out);
 
 /// Whether the forces of all springs and dampers are without kinks.
 bool springs_are_smooth(const System& system);
+/// Joints whose friction is pressed by rows at one of these places in lambda, rising.
+std::vector<std::string> pressed_by(const System& system, std::span<const int> places);
 /// Whether there are springs or compliant joints, on which bodies may vibrate.
 bool is_sprung(const System& system);
 

@@ -70,7 +70,7 @@ TEST(Stop, DamperSolvesTheRestitutionEquation) {
 // Truth: what was pressed without an impact comes back with 1 - e y of its energy, at any depth and `rest_speed` that is far below the
 // speed; and the way it is pressed in fast is that of an impact, 1 + y times as stiff.
 TEST(Stop, WhatIsPressedWithoutAnImpactComesBack) {
-  for (const double e : {0.9, 0.5, 0.3}) {
+  for (const double e : {0.9, 0.5, 0.3, 0.0}) {
     const double m = 2, k = 1000, d = 0.1, y = hunt_crossley(e), least = 1 - e * y;
     auto law = make_stop({.lower = 0, .stiffness = k, .restitution = e, .rest_speed = 1e-5});
     Particle p{m, -d, 0};

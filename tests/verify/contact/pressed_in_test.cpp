@@ -123,6 +123,22 @@ TEST(LinearContact, TellsThatItDoesNot) {
   EXPECT_EQ(c.solve("--set 'contact.c.b=\"block\"' --set 'region.*.interface=[\"spot\"]'").err.find("too little"), std::string::npos);
 }
 
+// Truth: the same.  A set that names other nodes, or some of those that are touched, or more than may have modes of their own, takes
+// nothing away from what contact may touch, in whatever order.
+TEST(LinearContact, GivesWayBesideWhatElseIsNamed) {
+  const double cells = Pressed(nonlinear, false).force();
+  const Pressed c(linear, false);
+  std::ofstream(c / "scene.toml", std::ios::app) << R"(
+[set.half]
+kind = "box"
+of = ["block"]
+low = [0.24, 0.24, 0.59]
+high = [0.51, 0.76, 0.61]
+)";
+  for (const char* sets : {"\"xmin\"", "\"half\"", "\"zmax\"", "\"zmax\", \"spot\"", "\"spot\", \"zmax\""})
+    EXPECT_NEAR(c.force(std::string("--set 'region.*.interface=[") + sets + "]'") / cells, 1, 1e-3) << sets;
+}
+
 TEST(LinearContact, RefusesSetsThatAreNone) {
   const Pressed c(linear, false);
   for (const auto& [set, text] : {std::pair{"spott", "no set of facets"}, {"block", "no set of facets"}}) {
