@@ -233,9 +233,9 @@ class Run {
   /// Where the rows that press friction are redundant, the motion depends on which of them were kept.
   void warn_of_shared_friction() const {
     if (!run_.talk) return;
-    const std::vector<std::string> joints = pressed_by(run_.system, run_.redundancy.undetermined);
+    const std::vector<std::string> pressed = pressed_by(run_.system, run_.redundancy.undetermined);
     for (const Entry& e : run_.scene.entries("friction"))
-      if (std::ranges::find(joints, e.text("joint")) != joints.end())
+      if (std::ranges::find(pressed, e.text("joint")) != pressed.end())
         warn(e.where("joint"),
              fmt::format("{}: how much of the force joint \"{}\" takes is not determined, as its rows are redundant: friction has that of "
                          "the rows that were kept, which may be nothing or all (other joints; or reaction = false and a preload)",
