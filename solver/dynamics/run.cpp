@@ -257,7 +257,7 @@ class Run {
     if (setup.envelope && (run_.analysis == Analysis::modes || run_.analysis == Analysis::buckling))
       throw Error(output.where("envelope"), "an analysis of modes or buckling has no steps", "leave output.envelope out");
     for (const Event& e : run_.events)
-      if (e.jump) setup.jumps.push_back(e.t);
+      if (e.jump || &e == &run_.events.back()) setup.jumps.push_back(e.t);  // a run that goes on may find a jump at the end
     setup.provenance = options_.provenance;
     setup.redundant = run_.redundancy.rank < run_.redundancy.rows;
     setup.own_time = in_time ? run_.integrator->own_time() : 1;

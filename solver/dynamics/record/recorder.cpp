@@ -62,9 +62,15 @@ void Recorder::archive(Archive& a) {
   a("recorder", rows_, intervals_, past_, n_written_, last_t_, next_field_, interval);
   if (interval != setup_.interval && setup_.interval > 0)
     next_field_ = setup_.interval * (std::floor(last_t_ * (1 + 1e-9) / setup_.interval) + 1);
+  if (a.restores())
+    for (Row& row : rows_) row.jump = is_jump(row.t);  // at what was the end there was none
   if (mesh_) mesh_->archive(a);
   if (share_) share_.emplace(system_);  // its factors are made anew on either side
   if (a.restores()) open(n_written_ > 0);
+}
+
+bool Recorder::is_jump(double t) const {
+  return std::ranges::any_of(setup_.jumps, [&](double at) { return std::abs(at - t) <= 1.001 * system_.same_time; });
 }
 
 void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations, const Config* shown) {
@@ -86,8 +92,7 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
   row.t = s.t;
   row.newton = iterations, last_t_ = s.t;
   row.point = std::move(numbers.end);
-  row.jump =
-      std::any_of(setup_.jumps.begin(), setup_.jumps.end(), [&](double t) { return std::abs(t - s.t) <= 1.001 * system_.same_time; });
+  row.jump = is_jump(s.t);
   row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
   if (row.field || setup_.envelope) row.q = s.q, row.v = v, row.memory = system_.part<Solids>().memory();
   if (row.field) {

@@ -64,6 +64,7 @@ class Recorder {
   void commit(RunOutput::When when);
   void declare_run(Store& f, const std::vector<double>& resolved) const;
   void declare_bodies(Store& f) const;
+  bool is_jump(double t) const;
   void advance(bool last);
   /// Steps that an extrapolation takes.
   size_t n_extrapolated() const { return size_t{2} + setup_.alternates + setup_.is_smooth; }

@@ -35,5 +35,37 @@ step = 0.003141592653589793
   }
 }
 
+// Truth: the same bits as in one run, also at the former end, where the force jumps from 10 to -20 N.
+TEST(EndRows, AtAJumpWhereTheRunHadEnded) {
+  const Workplace w;
+  w.write("scene.toml", R"([[body]]
+name = "a"
+mass = 1
+com = [0, 0, 0]
+inertia = [1, 1, 1]
+[[load]]
+kind = "force"
+name = "f"
+on = "a"
+force = [10, 0, 0]
+history = {t = [0, 0.01, 0.01, 1], value = [1, 1, -2, -2]}
+[[probe]]
+name = "p"
+on = "a"
+[time]
+end = 0.02
+step = 0.001
+)");
+  for (const std::string method : {"energy-momentum", "generalized-alpha"}) {
+    const std::string by = "hilo-solve --quiet scene.toml --checkpoint 5steps --set 'time.integrator=\"" + method + "\"' ";
+    succeeded(w.run(by + "-o whole.h5"));
+    succeeded(w.run(by + "-o run.h5 --set time.end=0.01"));
+    succeeded(w.run("hilo-solve --quiet --restart run.h5 --set time.end=0.02"));
+    const auto whole = Results(w / "whole.h5").history("probe/p"), again = Results(w / "run.h5").history("probe/p");
+    EXPECT_EQ((whole - again).cwiseAbs().maxCoeff(), 0) << method;
+    EXPECT_NEAR(whole(10, 6), -20, 1e-9) << method;
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test::end_rows_test
