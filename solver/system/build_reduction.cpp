@@ -54,28 +54,30 @@ void Builder::add_interfaces(int body, RegionParcel& parcel) const {
     if (out_->follower[node] == body && !of_block) marks.push_back({std::ssize(lists) - 1, mesh_->node_global[node]});
   };
   std::vector<char> may(regions_.size(), 0);  // have modes of what contacts may touch
+  std::set<const Entry*> read;
   for (size_t r = 0; r < regions_.size(); ++r) {
     const Region& region = regions_[r];
     if (region.fidelity != Fidelity::linear || region.body != body) continue;
-    const std::vector<std::string> named = region.interface ? region.interface->texts("interface") : std::vector<std::string>{};
-    may[r] = parcel.shapes.empty() && named != std::vector<std::string>{"none"};
-    if (named.empty() || !may[r]) {
-      if (!named.empty() && named.front() != "none")
-        region.interface->refuse("interface", fmt::format("region \"{}\" has shapes of a file: no node has modes of its own", region.name),
-                                 "leave shapes or interface out");
-      continue;
-    }
+    const Entry* e = region.interface;  // of several regions where its name is a glob
+    const std::vector<std::string> named = e ? e->texts("interface") : std::vector<std::string>{};
+    const bool none = named == std::vector<std::string>{"none"};
+    may[r] = parcel.shapes.empty() && !none;
+    if (named.empty() || none || !read.insert(e).second) continue;
+    if (!parcel.shapes.empty())
+      e->refuse("interface", fmt::format("region \"{}\" has shapes of a file: no node has modes of its own", region.name),
+                "leave shapes or interface out");
     for (const std::string& name : named) {
       const auto set = mesh.facet_sets.find(name);
       if (set == mesh.facet_sets.end())
-        region.interface->refuse("interface", fmt::format("no set of facets \"{}\"", name), suggest(name, mesh.all_names()));
+        e->refuse("interface", fmt::format("no set of facets \"{}\"", name), suggest(name, mesh.all_names()));
       lists.push_back({fmt::format("set \"{}\"", name), false});
-      const size_t before = marks.size();
-      for (const Facet& f : set->second)
+      double of_entry = 0;
+      for (const Facet& f : set->second) {
+        of_entry += regions_[mesh.region[f.cell]].interface == e;
         if (is_of(f.cell, body))
           for (const std::int64_t i : mesh.facet_nodes(f)) mark(i);
-      if (comm_.sum(static_cast<double>(marks.size() - before)) == 0)
-        region.interface->refuse("interface", fmt::format("set \"{}\" has no facets of region \"{}\"", name, region.name));
+      }
+      if (comm_.sum(of_entry) == 0) e->refuse("interface", fmt::format("set \"{}\" has no facets of the region \"{}\"", name, e->name));
     }
   }
   std::vector<char> asked(mesh.X.size(), 0);

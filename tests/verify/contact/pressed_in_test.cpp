@@ -139,6 +139,12 @@ high = [0.51, 0.76, 0.61]
     EXPECT_NEAR(c.force(std::string("--set 'region.*.interface=[") + sets + "]'") / cells, 1, 1e-3) << sets;
 }
 
+// A set that one of several regions has, named for all of them.
+TEST(LinearContact, ASetOfOneOfSeveralRegions) {
+  const Pressed c(linear, true);
+  EXPECT_NEAR(c.force("--set 'region.*.interface=[\"spot\"]'") / Pressed(nonlinear, true).force(), 1, 1e-3);
+}
+
 TEST(LinearContact, RefusesSetsThatAreNone) {
   const Pressed c(linear, false);
   for (const auto& [set, text] : {std::pair{"spott", "no set of facets"}, {"block", "no set of facets"}}) {
