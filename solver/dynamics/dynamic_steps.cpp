@@ -144,7 +144,10 @@ class DynamicSteps final : public Steps {
   void restart() {
     System& system = run_.system;
     State& state = run_.state;
-    if (state.t > 0 && system.traits().is_driven) run_.audit->push(run_.impulses.strike(system, *run_.solver, state, run_.talk).work);
+    if (state.t > 0 && system.traits().is_driven)
+      run_.audit->push(run_.impulses.strike(system, *run_.solver, state, run_.talk).work);
+    else if (state.t > 0 && run_.integrator->needs_acceleration() && system.traits().constrains)
+      nearest_velocities(system, *run_.solver, state.q, state.v, state.t);  // they were off as before the jump
     const std::vector<Active> rows = active_rows(system);
     if (run_.report.steps == 0) set_rows(system, run_.redundancy.at_pose);
     if (run_.integrator->needs_acceleration() || control_) consistent_acceleration(system, *run_.solver, state, 0.05 * step_);

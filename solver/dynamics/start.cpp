@@ -243,6 +243,25 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
   }
 }
 
+namespace {
+
+/// What of the jerk is no velocity that the joints allow; zero where these are not determined.
+Config part_across(const System& system, KktSolver& solver, const State& s) {
+  Config out, near;
+  combine(out, {{1, &s.v}, {1, &s.jerk}});
+  system.prescribe_rates(s.t, Side::left, &out, nullptr);
+  near = out;
+  try {
+    nearest_velocities(system, solver, s.q, near, s.t);
+  } catch (const Error&) {
+    near = out;
+  }
+  combine(out, {{1, &out}, {-1, &near}});
+  return out;
+}
+
+}  // namespace
+
 void consistent_acceleration(const System& system, KktSolver& solver, State& s, double h) {
   solve_acceleration(system, solver, s, s.a, s.lambda);
   // no farther than differences mean anything: a step yet to be chosen may be far longer than the motion is smooth
@@ -269,6 +288,7 @@ void consistent_acceleration(const System& system, KktSolver& solver, State& s, 
   Config change;
   combine(change, {{1, &ahead[1].a}, {-1, &s.a}});
   if (h * h * system.largest_rate(s.snap) > 0.25 * system.largest_rate(change)) combine(s.jerk, {{0, &s.jerk}});
+  s.across = part_across(system, solver, s);
 }
 
 namespace {

@@ -13,6 +13,7 @@ struct State {
   double t = 0;  // [s]
   Config q, v;
   Config a, jerk, snap;        // consistent ones at the start and after a jump, for methods that keep such history; else empty
+  Config across;               // beside them: what of the jerk is no velocity that the joints allow
   std::vector<double> lambda;  // multipliers of the last step, (3 x joint blocks)
 };
 

@@ -26,8 +26,9 @@ TEST(Start, IsAsExactByCgAsByFactors) {
     };
     const Eigen::MatrixXd truth = probe("light"), found = probe("cg");
     ASSERT_EQ(truth.rows(), 3);
-    for (int k = 0; k < 9; k += 3)  // position, velocity, acceleration
-      EXPECT_LT((found - truth).middleCols(k, 3).cwiseAbs().maxCoeff(), 1e-8 * truth.middleCols(k, 3).cwiseAbs().maxCoeff())
+    for (int k = 0; k < 9; k += 3)  // position, velocity, acceleration, to which a jerk by differences belongs
+      EXPECT_LT((found - truth).middleCols(k, 3).cwiseAbs().maxCoeff(),
+                (k < 6 ? 1e-8 : 1e-7) * truth.middleCols(k, 3).cwiseAbs().maxCoeff())
           << method << " " << k;
   }
 }

@@ -100,7 +100,7 @@ class GaussIntegrator final : public CoupledStages {
 
   /// Accelerations and multipliers at the end, at velocities that the joints allow: those of the stages are of lower order.
   void accept(State& s) override {
-    State at{.t = end_time(), .q = q1_, .v = v_end_, .a = {}, .jerk = {}, .snap = {}, .lambda = {}};
+    State at{.t = end_time(), .q = q1_, .v = v_end_, .a = {}, .jerk = {}, .snap = {}, .across = {}, .lambda = {}};
     solve_acceleration(*system_, *end_solver_, at, a_end_, taken_.back().lambda, true);
     if (given_.any()) system_->prescribe_rates(t_ + h_, Side::left, nullptr, &a_end_), system_->follow(a_end_);
     end(s), accepted();
