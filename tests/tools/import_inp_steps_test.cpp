@@ -82,6 +82,13 @@ TEST_F(ImportInpSteps, AMovedSupportGoesOn) {
   EXPECT_NEAR(at[1], -1500, .01);
 }
 
+// Truth: FIXED keeps the support where a step before has moved it, and says no place of its own.
+TEST_F(ImportInpSteps, AFixedSupportStaysWhereItIs) {
+  solve(bar + statics + "*BOUNDARY\nhead, 1, 1, 1e-6\n" + end + statics + "*BOUNDARY, FIXED\nhead, 1, 1\n" + end);
+  EXPECT_NE(err.find("*BOUNDARY, FIXED"), std::string::npos) << err;
+  for (const double F : foot({1, 2})) EXPECT_NEAR(F, -500, .01);
+}
+
 // Pulled with 4 N and let go.  Two cells with the mass of linear shape functions: K = EA/h [2 -1; -1 1], M = rho A h/6 [4 1; 1 2], of which
 // the modes are sin(i theta), theta = 45 and 135 degrees, w = c/h sqrt(6 (1 - cos theta)/(2 + cos theta)).
 TEST_F(ImportInpSteps, WhatIsPulledAndLetGoSwingsFromWhereItWas) {

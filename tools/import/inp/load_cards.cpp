@@ -45,6 +45,8 @@ void read_supports(InpReading& r) {
   InpDeck& d = r.deck;
   Imported& in = r.in;
   if (const auto odd = unknown_param(card, {"OP", "AMPLITUDE", "TYPE", "FIXED", "LOADCASE"}); !odd.empty()) return r.skip(odd);
+  if (card.has("FIXED") && r.step > 1)
+    return r.skip("*BOUNDARY, FIXED, which keeps what steps before it have moved");  // so does its absence
   const std::string type = card.word("TYPE", "DISPLACEMENT");
   const int rate = type == "VELOCITY" ? 1 : type == "ACCELERATION" ? 2 : 0;
   if (rate == 0 && type != "DISPLACEMENT") return r.skip("*BOUNDARY, TYPE=" + type);
