@@ -80,16 +80,21 @@ void Builder::add_interfaces(int body, RegionParcel& parcel) const {
       if (comm_.sum(of_entry) == 0) e->refuse("interface", fmt::format("set \"{}\" has no facets of the region \"{}\"", name, e->name));
     }
   }
-  std::vector<char> asked(mesh.X.size(), 0);
-  for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
+  bool all_may = true;  // of the regions that are one with this one
+  for (size_t r = 0; r < regions_.size(); ++r)
+    all_may = all_may && (may[r] || regions_[r].fidelity != Fidelity::linear || regions_[r].body != body);
+  std::vector<std::int64_t> rows;  // that may; a pair's nodes are on the first rank, where their cells need not be
+  for (std::int64_t e = 0; e < mesh.n_cells() && !all_may; ++e)
     if (may[mesh.region[e]])
-      for (const std::int64_t i : mesh.cell(e)) asked[i] = 1;
+      for (const std::int64_t i : mesh.cell(e)) rows.push_back(mesh_->node_global[i]);
+  rows = comm_.to_first(rows);
+  const std::set<std::int64_t> asked(rows.begin(), rows.end());
   for (const TouchedNodes& touched : touched_nodes(*out_)) {
     lists.push_back({fmt::format("contact \"{}\"", touched.contact), true});
-    for (const int i : touched.nodes)
-      if (asked[i]) mark(i);
+    for (const int i : touched.nodes) mark(i);
   }
-  for (const Mark& m : comm_.to_first(marks)) lists[m.list].rows.insert(m.row);
+  for (const Mark& m : comm_.to_first(marks))
+    if (List& list = lists[m.list]; !list.of_contact || all_may || asked.contains(m.row)) list.rows.insert(m.row);
   std::set<std::int64_t> named, touched, told;
   for (const List& list : lists)
     if (!list.of_contact && list.rows.size() <= most_free) named.insert(list.rows.begin(), list.rows.end());
