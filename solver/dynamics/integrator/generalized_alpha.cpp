@@ -28,7 +28,7 @@ class GeneralizedAlphaIntegrator final : public StageIntegrator {
     t_ = s.t, v0_ = s.v, h_ = h;
     if (h_b_ == 0) {
       a0_ = s.a, jerk_ = s.jerk, b_at_start_ = s.a;
-      combine(v0_, {{1, &s.v}, {(1. / 6 - offset / 2 - p_.beta) * h * h, &s.across}});
+      if (s.across.c.size() == s.v.c.size()) combine(v0_, {{1, &s.v}, {(1. / 6 - offset / 2 - p_.beta) * h * h, &s.across}});
     }
     combine(b0_, {{1, &b_at_start_}, {offset * (h - h_b_), &jerk_}});
     given_.at(system, t_ + h_, v0_);
