@@ -56,6 +56,7 @@ struct StopLaw {
   double rest_speed = 1e-3;  // speeds of approach below it are damped as this one, so that a part at rest comes to rest
 };
 std::unique_ptr<SpringLaw> make_stop(const StopLaw& stop);
+
 /// Motor: force over rate, piecewise linear, continued by its end segments; times the step's factor.
 struct MotorLaw {
   std::vector<double> rate, force;

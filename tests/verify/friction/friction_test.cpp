@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Friction in joints: the decelerations, decrements and creeps of Coulomb's law.
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::friction_test {
@@ -95,34 +96,13 @@ TEST(Friction, TopInABallJointSpinsDownAlongALine) {
 // Two equal bearings of a shaft bear half of its weight each, and only their rows say how much of it friction gets: told by name.
 TEST(Friction, OfRedundantJointsIsTold) {
   const Workplace w;
-  w.write("scene.toml", R"(gravity = [0, 0, -10]
-[[body]]
-name = "d"
-mass = 2
-com = [0, 0, 0]
-inertia = [0.1, 0.1, 0.1]
-[[joint]]
-kind = "revolute"
-name = "A"
-b = "d"
-at = [0.5, 0, 0]
-axis = [1, 0, 0]
-[[joint]]
-kind = "revolute"
-name = "B"
-b = "d"
-at = [-0.5, 0, 0]
-axis = [1, 0, 0]
-[[friction]]
-name = "f"
-joint = "B"
-coefficient = 0.1
-radius = 0.1
-[time]
-end = 0.1
-step = 0.01
-)");
-  const std::string told = "scene.toml:21:1: friction \"f\": how much of the force joint \"B\" takes is not determined";
+  const std::string bearing = "axis = [1, 0, 0]";
+  w.write("scene.toml", "gravity = [0, 0, -10]\n" + body("d", 2, Vec3::Zero(), {0.1, 0.1, 0.1}) +
+                            joint("revolute", "A", "ground", "d", {0.5, 0, 0}, bearing) +
+                            joint("revolute", "B", "ground", "d", {-0.5, 0, 0}, bearing) +
+                            "[[friction]]\nname = \"f\"\njoint = \"B\"\ncoefficient = 0.1\nradius = 0.1\n" + in_time(0.1, 0.01));
+
+  const std::string told = ": friction \"f\": how much of the force joint \"B\" takes is not determined";
   const Ran both = w.run("hilo-solve scene.toml -o run.h5");
   EXPECT_EQ(both.exit, 0) << both.err;
   EXPECT_NE(both.err.find(told), std::string::npos) << both.err;

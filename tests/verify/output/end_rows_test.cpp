@@ -1,30 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The first and the last row of what belongs to the inside of steps: forces of an unbalanced rotor.
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::end_rows_test {
 namespace {
 
+/// 1 kg on a hinge along z, 0.1 m off, 0.02 kg m^2 about it.
+std::string rotor(const std::string& drive = "") {
+  return body("a", 1, {0.1, 0, 0}, {0.01, 0.01, 0.01}) + joint("revolute", "j", "ground", "a", Vec3::Zero(), "axis = [0, 0, 1]\n" + drive);
+}
+
 // Truth: m r w^2 = 1000 N throughout, in 20 steps a turn.  The first row is that of the start; the last one of methods whose forces belong
 // to the middle of steps is extrapolated along a parabola, which is off by the fourth order in size.
 TEST(EndRows, OfAnUnbalancedRotor) {
   const Workplace w;
-  w.write("scene.toml", R"([[body]]
-name = "a"
-mass = 1
-com = [0.1, 0, 0]
-inertia = [0.1, 0.1, 0.1]
-[[joint]]
-kind = "revolute"
-name = "j"
-b = "a"
-at = [0, 0, 0]
-axis = [0, 0, 1]
-spin = 100
-[time]
-end = 0.0628318530717958
-step = 0.003141592653589793
-)");
+  w.write("scene.toml", rotor("spin = 100\n") + in_time(0.0628318530717958, 0.003141592653589793));
+
   const std::vector<std::pair<std::string, double>> methods{
       {"gauss", 1e-3}, {"energy-momentum", 16}, {"mid-point", 16}, {"radau", 8}, {"generalized-alpha", 40}};
   for (const auto& [method, last] : methods) {
@@ -39,30 +31,12 @@ step = 0.003141592653589793
 // the load: a fourth of the error at half the step, in all rows.
 TEST(EndRows, FollowedByWhatDoesNotRing) {
   const Workplace w;
-  w.write("scene.toml", R"([[body]]
-name = "a"
-mass = 1
-com = [0.1, 0, 0]
-inertia = [0.01, 0.01, 0.01]
-[[joint]]
-kind = "revolute"
-name = "j"
-b = "a"
-at = [0, 0, 0]
-axis = [0, 0, 1]
-[[initial]]
-on = ["a"]
-spin = [0, 0, 10]
-about = [0, 0, 0]
-[[load]]
-kind = "torque"
-name = "t"
-on = "a"
-torque = [0, 0, 2]
-history = {t = [0, 0.02, 0.02, 1], value = [1, 1, 3, 3]}
-[time]
-end = 0.04
-)");
+  w.write("scene.toml",
+          rotor() +
+              "[[initial]]\non = [\"a\"]\nspin = [0, 0, 10]\nabout = [0, 0, 0]\n[[load]]\nkind = \"torque\"\nname = \"t\"\non = \"a\"\n"
+              "torque = [0, 0, 2]\nhistory = {t = [0, 0.02, 0.02, 1], value = [1, 1, 3, 3]}\n" +
+              in_time(0.04, 1e-3));
+
   for (const std::string method : {"generalized-alpha", "hht", "wbz", "energy-momentum"}) {
     double error[2];
     for (int k = 0; k < 2; ++k) {
@@ -84,30 +58,16 @@ end = 0.04
 // Truth: the same bits as in one run, also at the former end, where the force jumps from 10 to -20 N.
 TEST(EndRows, AtAJumpWhereTheRunHadEnded) {
   const Workplace w;
-  w.write("scene.toml", R"([[body]]
-name = "a"
-mass = 1
-com = [0, 0, 0]
-inertia = [1, 1, 1]
-[[load]]
-kind = "force"
-name = "f"
-on = "a"
-force = [10, 0, 0]
-history = {t = [0, 0.01, 0.01, 1], value = [1, 1, -2, -2]}
-[[probe]]
-name = "p"
-on = "a"
-[time]
-end = 0.02
-step = 0.001
-)");
+  w.write("scene.toml", body("a", 1, Vec3::Zero(), {1, 1, 1}) +
+                            force("f", "a", {10, 0, 0}, "history = {t = [0, 0.01, 0.01, 1], value = [1, 1, -2, -2]}") + probe("a") +
+                            in_time(0.02, 1e-3));
+
   for (const std::string method : {"energy-momentum", "generalized-alpha"}) {
     const std::string by = "hilo-solve --quiet scene.toml --checkpoint 5steps --set 'time.integrator=\"" + method + "\"' ";
     succeeded(w.run(by + "-o whole.h5"));
     succeeded(w.run(by + "-o run.h5 --set time.end=0.01"));
     succeeded(w.run("hilo-solve --quiet --restart run.h5 --set time.end=0.02"));
-    const auto whole = Results(w / "whole.h5").history("probe/p"), again = Results(w / "run.h5").history("probe/p");
+    const auto whole = Results(w / "whole.h5").history("probe/a"), again = Results(w / "run.h5").history("probe/a");
     EXPECT_EQ((whole - again).cwiseAbs().maxCoeff(), 0) << method;
     EXPECT_NEAR(whole(10, 6), -20, 1e-9) << method;
   }
