@@ -14,7 +14,8 @@ namespace {
 const std::string bar =
     "*NODE\n1, 0, 0, 0\n2, 0, 1, 0\n3, 0, 1, 1\n4, 0, 0, 1\n5, 1, 0, 0\n6, 1, 1, 0\n7, 1, 1, 1\n8, 1, 0, 1\n9, 2, 0, 0\n10, 2, 1, 0\n"
     "11, 2, 1, 1\n12, 2, 0, 1\n*ELEMENT, TYPE=C3D8, ELSET=bar\n1, 1, 2, 3, 4, 5, 6, 7, 8\n2, 5, 6, 7, 8, 9, 10, 11, 12\n"
-    "*NSET, NSET=foot, GENERATE\n1, 4\n*NSET, NSET=head, GENERATE\n9, 12\n*NSET, NSET=half\n9, 10\n*SURFACE, NAME=end\n2, S2\n"
+    "*NSET, NSET=foot, GENERATE\n1, 4\n*NSET, NSET=head, GENERATE\n9, 12\n*NSET, NSET=half\n9, 10\n*SURFACE, NAME=end\n2, S2\n*SURFACE, "
+    "NAME=free\n2\n"
     "*MATERIAL, NAME=m\n*ELASTIC\n1e9, 0.\n*DENSITY\n1000.\n*SOLID SECTION, ELSET=bar, MATERIAL=m\n*BOUNDARY\nfoot, 1, 3\n";
 const std::string statics = "*STEP\n*STATIC\n", end = "*END STEP\n";
 
@@ -72,6 +73,27 @@ TEST_F(ImportInpSteps, LoadsGoFromWhereTheyWereAndAmplitudesBeginWithTheirStep) 
 TEST_F(ImportInpSteps, ANodeOfTwoSetsHasTheLastLoad) {
   solve(bar + statics + "*CLOAD\nhead, 1, 1.\n" + end + statics + "*CLOAD\nhalf, 1, 3.\n9, 2, 0.\n" + end);
   EXPECT_EQ(foot({1, 2}), (std::vector<double>{-4, -8}));
+}
+
+// A face that a later step speaks of by another set, by number or by a surface has one pressure, not two.  Each face has 1 m^2.
+TEST_F(ImportInpSteps, AFaceOfTwoSetsHasTheLastPressure) {
+  solve(bar + statics + "*DSLOAD\nend, P, -2.\n" + end + statics + "*DLOAD\n2, P2, -3.\n" + end);
+  EXPECT_EQ(foot({1, 2}), (std::vector<double>{-2, -3}));
+  solve(bar + "*ELSET, ELSET=outer\n2\n" + statics + "*DLOAD\nbar, P3, 1.\n" + end + statics + "*DLOAD\nouter, P3, 3.\n" + end);
+  const auto force = read("/history/motion/foot");
+  EXPECT_NEAR(force[8], -2, 1e-6);
+  EXPECT_NEAR(force[14], -4, 1e-6);  // 1 on the first cell, 3 on the second
+  EXPECT_EQ(err.find("not read"), std::string::npos) << err;
+}
+
+// Truth: CalculiX 2.20 keeps the first axis of a set and says nothing.  1 rad/s about z through 0: m w^2 R = 2000 kg 1 m.
+TEST_F(ImportInpSteps, CentrifAboutAnotherAxisIsTold) {
+  const std::string first = "*DLOAD\nbar, CENTRIF, 1., 0., 0., 0., 0., 0., 1.\n", other = "bar, CENTRIF, 4., 0., 0., 0., 0., 1., 0.\n";
+  for (const auto& text : {statics + first + other + end, statics + first + end + statics + "*DLOAD\n" + other + end}) {
+    solve(bar + text, "a.inp", "", "--accept-left-out");
+    EXPECT_NEAR(foot({1}).at(0), -2000, 1e-6);
+    expect_said("about another axis");
+  }
 }
 
 // Motions go on from step to step too: 1 and 3 um at the head, E A/L = 5e8 N/m.
@@ -185,6 +207,8 @@ TEST_F(ImportInpSteps, WhatOneRunCannotSayIsToldAndTheStepsBeforeItStay) {
        "*BOUNDARY in step 2 and later", 1},
       {statics + pull + end + statics + side + end + statics + "*BOUNDARY\nhead, 3, 3\n" + end,
        "a support that is not there from the first step on", "*BOUNDARY in step 3 and later", 2},
+      {statics + "*DSLOAD\nfree, P, 1.\n" + end + statics + "*DLOAD\n2, P2, 3.\n" + end, "a pressure on a part of surface free",
+       "*DLOAD in step 2 and later", 1},
       {statics + pull + end + "*STEP\n*BUCKLE\n2\n" + side + end, "*BUCKLE is another run", "*CLOAD in step 2 and later", 1},
       {statics + pull + end + "*STEP\n*FREQUENCY\n2\n" + end, "that of the unloaded model", "*FREQUENCY in step 2 and later", 1},
       {"*EQUATION\n2\n9, 1, 1., 10, 1, -1.\n" + statics + pull + end + statics + side + "*EQUATION, REMOVE\n9, 1\n" + end,

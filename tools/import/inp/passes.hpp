@@ -42,6 +42,8 @@ void join_steps(InpDeck& deck, Imported& in);
 /// A line for each component.  Where lines, from that step on, speak of a component of a node (`vectors`: of a node) that others name
 /// otherwise, each node has its own.
 std::vector<InpNodal> apart(const InpDeck& deck, const std::vector<InpNodal>& lines, int from_step, bool vectors = false);
+/// Whether two CENTRIF turn about one line.
+bool is_same_axis(const InpDistributed& a, const InpDistributed& b);
 /// What is left of a line without the components from `first` to `last`.
 std::vector<InpNodal> without(const InpNodal& line, int first, int last);
 

@@ -49,6 +49,13 @@ void InpScene::gravity() {
 void InpScene::centrifugal() {
   for (const auto& p : d_.distributed) {
     if (p.face != -2 || p.value == 0) continue;
+    const auto& first = *std::ranges::find_if(d_.distributed, [&](const InpDistributed& q) {
+      return q.face == -2 && q.target == p.target && (!p.target.empty() || q.id == p.id);
+    });
+    if (!is_same_axis(first, p)) {  // as CalculiX does
+      in_.skip("*DLOAD CENTRIF about another axis than the one before it, on the same elements", p.place);
+      continue;
+    }
     if (const auto ids = numbers_in(d_.elset, p); std::ranges::any_of(ids, [&](std::int64_t id) { return d_.beams.contains(id); }))
       in_.skip("*DLOAD CENTRIF on beams", p.place);
     tell_turns(p);

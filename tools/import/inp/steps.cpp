@@ -40,6 +40,56 @@ std::string amplitude_of(InpDeck& d, const Points& points) {
   return upper(a.name);
 }
 
+using Face = std::tuple<std::int64_t, int, std::array<double, 3>>;  // element, face, direction
+
+std::array<double, 3> direction_of(const InpDistributed& l) { return {l.direction.x(), l.direction.y(), l.direction.z()}; }
+
+/// What a load by face or by length is on; none of gravity and CENTRIF, of which elements have the sum of their sets.
+std::vector<Face> faces_of(const InpDeck& d, const InpDistributed& l) {
+  std::vector<Face> out;
+  const auto add = [&](const InpTarget& t, int first, int last) {
+    for (const auto id : numbers_in(d.elset, t))
+      for (int face = first; face <= last; ++face) out.emplace_back(id, face, direction_of(l));
+  };
+  if (l.face == 0) {
+    for (const InpSurface& s : d.surfaces)
+      if (upper(s.name) == l.target)
+        for (const auto& part : s.lines) part.face == 0 ? add(part, 1, 6) : add(part, part.face, part.face);
+  } else if (l.face != -1 && l.face != -2)
+    add(l, l.face, l.face);
+  return out;
+}
+
+/// A load for each face where a later step speaks of faces by another set, number or surface.
+std::vector<InpDistributed> by_face(const InpDeck& d, const std::vector<InpDistributed>& lines) {
+  std::map<Face, std::set<std::pair<std::string, std::int64_t>>> names;
+  bool anew = false;
+  for (const InpDistributed& l : lines)
+    for (const Face& f : faces_of(d, l)) {
+      auto& said = names[f];
+      said.insert({l.face == 0 ? "surface " + l.target : l.target, l.target.empty() ? l.id : 0});
+      anew = anew || (said.size() > 1 && l.step > 1);
+    }
+  if (!anew) return lines;
+  std::vector<InpDistributed> out;
+  for (const InpDistributed& l : lines) {
+    const auto faces = faces_of(d, l);
+    if (std::ranges::none_of(faces, [&](const Face& f) { return names[f].size() > 1; })) {
+      out.push_back(l);
+      continue;
+    }
+    for (const InpSurface& s : d.surfaces)
+      if (l.face == 0 && upper(s.name) == l.target)
+        if (std::ranges::any_of(s.lines, [](const auto& part) { return part.face == 0 || part.of_shell; }))
+          throw Cannot{fmt::format("a pressure on a part of surface {}", s.name), l.place};
+    for (const auto& [id, face, direction] : faces) {
+      InpDistributed& one = out.emplace_back(l);
+      one.target.clear(), one.id = id, one.face = face;
+    }
+  }
+  return out;
+}
+
 class Joiner {
  public:
   Joiner(InpDeck& d, size_t n) : d_(d), n_(n) {
@@ -64,7 +114,7 @@ class Joiner {
     p.steps = static_cast<int>(n_ - std::min(first_, n_));
     d_.supports = joined(apart(d_, d_.supports, 2), &InpStep::new_supports, true);
     d_.forces = joined(apart(d_, d_.forces, 2), &InpStep::new_forces, false);
-    d_.distributed = joined(d_.distributed, &InpStep::new_distributed, false);
+    d_.distributed = joined(by_face(d_, d_.distributed), &InpStep::new_distributed, false);
     return p;
   }
 
@@ -72,11 +122,10 @@ class Joiner {
   static size_t index(int step) { return static_cast<size_t>(std::max(step, 1) - 1); }
 
   /// What lines have in common that speak of the same.
-  using Key = std::tuple<std::string, std::int64_t, int, std::array<double, 6>>;
+  using Key = std::tuple<std::string, std::int64_t, int, std::array<double, 3>>;
   static Key key_of(const InpNodal& l) { return {l.target, l.target.empty() ? l.id : 0, l.first, {}}; }
   static Key key_of(const InpDistributed& l) {
-    const Vec3 e = l.direction, x = l.at;
-    return {l.target, l.target.empty() ? l.id : 0, l.face, {e.x(), e.y(), e.z(), x.x(), x.y(), x.z()}};
+    return {l.target, l.target.empty() ? l.id : 0, l.face, l.face == -2 ? std::array<double, 3>{} : direction_of(l)};
   }
 
   template <class Line>
@@ -88,6 +137,7 @@ class Joiner {
       if (index(l.step) >= n_) continue;
       const auto [at, fresh] = known.try_emplace(key_of(l), items.size());
       if (fresh) items.push_back({i, std::vector<Item::Given>(n_)});
+      require_same_axis(lines[items[at->second].line], l);
       give(items[at->second], l.step, l.value, l.amplitude, !support, l.place);
     }
     remove(items, anew);
@@ -98,6 +148,11 @@ class Joiner {
       if (course(item, l.value, l.amplitude, l.place) || support) out.push_back(l);
     }
     return out;
+  }
+
+  static void require_same_axis(const InpNodal&, const InpNodal&) {}
+  static void require_same_axis(const InpDistributed& a, const InpDistributed& b) {
+    if (a.face == -2 && !is_same_axis(a, b)) throw Cannot{"CENTRIF about another axis than before", b.place};
   }
 
   void give(Item& item, int step, double value, const std::string& amplitude, bool add, const std::string& place) const {
@@ -215,6 +270,11 @@ size_t longest(const InpDeck& d, std::string& why) {
 }
 
 }  // namespace
+
+bool is_same_axis(const InpDistributed& a, const InpDistributed& b) {
+  const Vec3 off = b.at - a.at;
+  return a.direction.cross(b.direction).norm() + a.direction.cross(off).norm() <= 1e-9 * (1 + off.norm());
+}
 
 std::vector<InpNodal> apart(const InpDeck& d, const std::vector<InpNodal>& lines, int from_step, bool vectors) {
   std::map<std::pair<std::int64_t, int>, std::set<std::pair<std::string, std::int64_t>>> names;  // of node and component
