@@ -47,7 +47,7 @@ def commands(repo):
     """Each command once, with the page that names it first."""
     found = {}
     for page in ["README.md"] + sorted(glob.glob("docs/**/*.md", recursive=True, root_dir=repo)):
-        if page in ("docs/changes.md", "docs/errors.md"):  # a history; cli.errors runs the other
+        if page.startswith("docs/changes") or page == "docs/errors.md":  # histories; cli.errors runs the other
             continue
         text = open(os.path.join(repo, page)).read()
         pieces = re.findall(r"`([^`\n]+)`", text) + [line[4:] for line in text.splitlines() if line.startswith("    ")]
