@@ -17,7 +17,6 @@
 #include "base/shell_shape.hpp"
 #include "linear/shared_cholesky.hpp"
 #include "system/builder.hpp"
-#include "system/contacts.hpp"
 #include "system/joints.hpp"
 #include "system/linear_regions.hpp"
 #include "system/region_parcel.hpp"
@@ -33,90 +32,6 @@ constexpr size_t told_from = 100000;  // unknowns of a region from which its red
 bool Builder::is_of(std::int64_t cell, int linear_body) const {
   const Region& region = regions_[mesh_->mesh.region[cell]];
   return region.fidelity == Fidelity::linear && region.body == linear_body;
-}
-
-/// Nodes that have modes of their own, as those that ties hold: of the sets that the scene names, and what contacts may touch besides. Few:
-/// many would move by smooth functions, and do not give way where they are pressed in.  Collective.
-void Builder::add_interfaces(int body, RegionParcel& parcel) const {
-  const Mesh& mesh = mesh_->mesh;
-  struct List {
-    std::string name;
-    bool of_contact;
-    std::set<std::int64_t> rows = {};
-  };
-  struct Mark {
-    std::int64_t list, row;
-  };
-  std::vector<List> lists;
-  std::vector<Mark> marks;
-  const auto mark = [&](std::int64_t node) {
-    const bool of_block = !mesh.block.empty() && mesh.block[node] >= 0;
-    if (out_->follower[node] == body && !of_block) marks.push_back({std::ssize(lists) - 1, mesh_->node_global[node]});
-  };
-  std::vector<char> may(regions_.size(), 0);  // have modes of what contacts may touch
-  std::set<const Entry*> read;
-  for (size_t r = 0; r < regions_.size(); ++r) {
-    const Region& region = regions_[r];
-    if (region.fidelity != Fidelity::linear || region.body != body) continue;
-    const Entry* e = region.interface;  // of several regions where its name is a glob
-    const std::vector<std::string> named = e ? e->texts("interface") : std::vector<std::string>{};
-    const bool none = named == std::vector<std::string>{"none"};
-    may[r] = parcel.shapes.empty() && !none;
-    if (named.empty() || none || !read.insert(e).second) continue;
-    if (!parcel.shapes.empty())
-      e->refuse("interface", fmt::format("region \"{}\" has shapes of a file: no node has modes of its own", region.name),
-                "leave shapes or interface out");
-    for (const std::string& name : named) {
-      const auto set = mesh.facet_sets.find(name);
-      if (set == mesh.facet_sets.end())
-        e->refuse("interface", fmt::format("no set of facets \"{}\"", name), suggest(name, mesh.all_names()));
-      lists.push_back({fmt::format("set \"{}\"", name), false});
-      double of_entry = 0;
-      for (const Facet& f : set->second) {
-        of_entry += regions_[mesh.region[f.cell]].interface == e;
-        if (is_of(f.cell, body))
-          for (const std::int64_t i : mesh.facet_nodes(f)) mark(i);
-      }
-      if (comm_.sum(of_entry) == 0) e->refuse("interface", fmt::format("set \"{}\" has no facets of the region \"{}\"", name, e->name));
-    }
-  }
-  bool all_may = true;  // of the regions that are one with this one
-  for (size_t r = 0; r < regions_.size(); ++r)
-    all_may = all_may && (may[r] || regions_[r].fidelity != Fidelity::linear || regions_[r].body != body);
-  std::vector<std::int64_t> rows;  // that may; a pair's nodes are on the first rank, where their cells need not be
-  for (std::int64_t e = 0; e < mesh.n_cells() && !all_may; ++e)
-    if (may[mesh.region[e]])
-      for (const std::int64_t i : mesh.cell(e)) rows.push_back(mesh_->node_global[i]);
-  rows = comm_.to_first(rows);
-  const std::set<std::int64_t> asked(rows.begin(), rows.end());
-  for (const TouchedNodes& touched : touched_nodes(*out_)) {
-    lists.push_back({fmt::format("contact \"{}\"", touched.contact), true});
-    for (const int i : touched.nodes) mark(i);
-  }
-  for (const Mark& m : comm_.to_first(marks))
-    if (List& list = lists[m.list]; !list.of_contact || all_may || asked.contains(m.row)) list.rows.insert(m.row);
-  std::set<std::int64_t> named, touched, told;
-  for (const List& list : lists)
-    if (!list.of_contact && list.rows.size() <= most_free) named.insert(list.rows.begin(), list.rows.end());
-  const auto is_named = [&](std::int64_t row) { return named.contains(row); };
-  for (List& list : lists) {
-    if (!list.of_contact) continue;
-    const bool where_named = std::ranges::any_of(list.rows, is_named);
-    std::erase_if(list.rows, is_named);
-    touched.insert(list.rows.begin(), list.rows.end());
-    if (!where_named) told.insert(list.rows.begin(), list.rows.end());
-  }
-  if (touched.size() > most_free || parcel.stiffening) {
-    if (!told.empty())
-      warn(parcel.where,
-           fmt::format("linear region \"{}\": contacts may touch {} of its nodes, which move by its modes alone: it gives way too "
-                       "little where it is pressed in (give the sets of facets that are touched as interface{})",
-                       out_->bodies[body].name, told.size(), parcel.stiffening ? ", without stiffening" : ""));
-    std::erase_if(lists, [](const List& list) { return list.of_contact; });
-  }
-  std::ranges::stable_sort(lists, {}, [](const List& list) { return list.rows.size(); });  // many move together: few come first
-  for (const List& list : lists)
-    if (!list.rows.empty()) parcel.tied.emplace_back(list.name, std::vector(list.rows.begin(), list.rows.end()));
 }
 
 /// Collective.

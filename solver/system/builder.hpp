@@ -82,13 +82,15 @@ class Builder {
   // build_reduction.cpp
   bool is_of(std::int64_t cell, int linear_body) const;
   RegionParcel parcel_of(int number);
-  void add_interfaces(int body, RegionParcel& parcel) const;
   ReductionInput reduction_input(const RegionParcel& parcel, const Body& axes) const;
   void set_wishes(ReductionInput& in, const RegionParcel& parcel, const Body& axes) const;
   Eigen::MatrixXd given_shapes(const RegionParcel& parcel) const;
   Reduction reduction_of(const ReductionInput& in, const Body& axes, const std::string& where);
   std::string kept_place(const std::string& region, const ReductionKey& key) const;
   void keep_reductions() const;
+  // build_interfaces.cpp
+  struct Interfaces;
+  void add_interfaces(int body, RegionParcel& parcel) const;
   // build_modes.cpp
   void reduce_linear_regions();
   void spread_shapes(const Modes& modes, const Reduction& found, const std::map<std::int64_t, int>& local);

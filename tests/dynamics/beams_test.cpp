@@ -6,7 +6,7 @@
 #include "model/scene.hpp"
 #include "ranks.hpp"
 
-namespace hilo {
+namespace hilo::test::beams_test {
 namespace {
 
 /// A curved beam that hangs on a hub, and another one on its third section.
@@ -42,4 +42,4 @@ TEST(KeptBeams, GoOnOnTwoRanks) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::beams_test

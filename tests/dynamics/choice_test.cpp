@@ -3,7 +3,7 @@
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/scenes.hpp"
 
-namespace hilo::test {
+namespace hilo::test::choice_test {
 namespace {
 
 // Truth: the multipliers of a step are unknowns, and energy-momentum keeps none from the step before; where Newton starts does not matter.
@@ -71,4 +71,4 @@ TEST(Integrator, RefusesWhatItCannotBe) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::choice_test

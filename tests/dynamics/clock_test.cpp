@@ -2,7 +2,7 @@
 // The clock of mechanisms of one degree of freedom: where it is used, what it leaves alone, and what it does where the motion turns back.
 #include "dynamics/scenes.hpp"
 
-namespace hilo::test {
+namespace hilo::test::clock_test {
 namespace {
 
 const std::string pin = "axis = [0, 0, 1]\n", time_table = "[time]\nend = 1\nstep = 0.01\n";
@@ -137,4 +137,4 @@ TEST(Clock, LeavesEnergyAloneAtLongSteps) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::clock_test

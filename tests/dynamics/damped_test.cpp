@@ -3,7 +3,7 @@
 #include "dynamics/scenes.hpp"
 #include "model/scene.hpp"
 
-namespace hilo::test {
+namespace hilo::test::damped_test {
 namespace {
 
 /// 3 kg on k = 8e5 N/m and c = 4e4 N s/m, 0.1 m off at rest: s1 = -20.02/s, s2 = -13 313/s.
@@ -160,4 +160,4 @@ TEST(Damped, MethodsOfHighOrderKeepTheirOrderInBeams) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::damped_test

@@ -7,7 +7,7 @@
 #include "model/local_mesh.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::events_test {
 namespace {
 
 constexpr double odd = 0.0153, end_of_run = 0.05, step = 0.01;
@@ -140,4 +140,4 @@ TEST_F(HistoryEvents, LeaveOutTheKinksOfAMeasuredTableAndKeepItsBlows) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::events_test

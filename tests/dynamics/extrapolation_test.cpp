@@ -4,7 +4,7 @@
 #include "dynamics/scenes.hpp"
 #include "system/system.hpp"
 
-namespace hilo::test {
+namespace hilo::test::extrapolation_test {
 namespace {
 
 /// A pendulum in full swing.
@@ -85,4 +85,4 @@ TEST(Extrapolation, OfMultipliersEndsWithTheStepLengthWherePositionsNeedNone) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::extrapolation_test

@@ -7,7 +7,7 @@
 #include "linear/tangent_reader.hpp"
 #include "system/along.hpp"
 
-namespace hilo::test {
+namespace hilo::test::gauss_test {
 namespace {
 
 TEST(Gauss, IsOfOrderSixInPositionVelocityAccelerationAndReaction) {
@@ -311,4 +311,4 @@ TEST(Gauss, TakesLongStepsWithCells) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::gauss_test

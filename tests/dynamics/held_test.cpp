@@ -2,7 +2,7 @@
 // Statics and the start from equilibrium: what turns inside out is refused, and what nothing holds is told by name.
 #include "dynamics/scenes.hpp"
 
-namespace hilo::test {
+namespace hilo::test::held_test {
 namespace {
 
 const std::string soft =
@@ -102,4 +102,4 @@ TEST_F(Held, AStartFromEquilibriumNeedsOne) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::held_test

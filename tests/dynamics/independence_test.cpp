@@ -8,7 +8,7 @@
 #include <Eigen/SparseCore>
 #include <random>
 
-namespace hilo::test {
+namespace hilo::test::independence_test {
 namespace {
 
 /// `n` columns of unit length with four entries each, in a band; every seventh is a sum of the two before it.
@@ -50,4 +50,4 @@ TEST_P(IndependentColumns, MakeUpTheOthers) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::independence_test

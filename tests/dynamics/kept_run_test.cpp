@@ -8,7 +8,7 @@
 #include "ranks.hpp"
 #include "verify/plasticity/uniaxial.hpp"
 
-namespace hilo::test {
+namespace hilo::test::kept_run_test {
 namespace {
 
 std::string revolute(const std::string& name, const std::string& a, const std::string& b, const Vec3& at, const std::string& more = "") {
@@ -198,4 +198,4 @@ TEST(KeptRun, GoesOnOnTwoRanks) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::kept_run_test

@@ -4,7 +4,7 @@
 #include "ranks.hpp"
 #include "verify/block_mesh.hpp"
 
-namespace hilo::test {
+namespace hilo::test::kept_shells_test {
 namespace {
 
 std::string strip(const std::filesystem::path& folder, const std::string& law) {
@@ -56,4 +56,4 @@ TEST(KeptShells, GoOnOnTwoRanks) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::kept_shells_test

@@ -3,7 +3,7 @@
 // against RK4 on one or three coordinates in the test itself, DPSMOOTH (flexible) against Radau IIA5 at a small step.
 #include "dynamics/scenes.hpp"
 
-namespace hilo::test {
+namespace hilo::test::methods_test {
 namespace {
 
 struct Method {
@@ -107,4 +107,4 @@ TEST(Radau, GoesOnFromARefusedStepAsIfItHadNotBeen) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::methods_test

@@ -5,7 +5,7 @@
 #include "system/dense_kkt.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::newton_test {
 namespace {
 
 /// A dense solver, or one that answers zero to all and calls it solved.
@@ -43,4 +43,4 @@ TEST(Newton, BelievesNoSolverThatMovesNothing) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::newton_test

@@ -3,7 +3,7 @@
 // equations in the test itself, which has neither joints nor multipliers.
 #include "dynamics/scenes.hpp"
 
-namespace hilo::test {
+namespace hilo::test::order_test {
 namespace {
 
 /// The far corner at t, and what a sensor there feels [g0].
@@ -96,4 +96,4 @@ TEST(Equilibrium, IsAStateTheRunStaysIn) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::order_test

@@ -2,7 +2,7 @@
 // Redundant rows of mechanisms too large for one dense matrix.
 #include "dynamics/scenes.hpp"
 
-namespace hilo::test {
+namespace hilo::test::redundancy_test {
 namespace {
 
 // Truth: 2 n + 1 rods have 12 n + 6 degrees of freedom, 3 n + 1 revolutes 15 n + 5 rows, and the mechanism moves in one way.  The rank is
@@ -87,4 +87,4 @@ TEST(Redundancy, EveryMeshOfANetHasThreeRowsTooMany) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::redundancy_test

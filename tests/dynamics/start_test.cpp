@@ -3,7 +3,7 @@
 #include "dynamics/scenes.hpp"
 #include "verify/block_mesh.hpp"
 
-namespace hilo::test {
+namespace hilo::test::start_test {
 namespace {
 
 // CG solves to four digits, which is enough for Newton.  A start has no Newton: initial velocities that a hinge does not allow, then
@@ -34,4 +34,4 @@ TEST(Start, IsAsExactByCgAsByFactors) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::start_test

@@ -4,7 +4,7 @@
 #include "dynamics/scenes.hpp"
 #include "ranks.hpp"
 
-namespace hilo::test {
+namespace hilo::test::step_errors_test {
 namespace {
 
 /// A strip of 1 x 0.1 x 0.1 m, of n x m x m hexahedra, clamped at one end, that a force bends at the other: a period of .2 s.
@@ -169,4 +169,4 @@ TEST(DISABLED_StepErrorsOnRanks, GoOnWithTheRun) {
   expect_goes_on(".", strip(".", 4, 1, "end = 0.2\nstep = 0.005\nerror_estimate = \"steps\"\n"), "mesh.h5", {4, 13, 27});
 }
 
-}  // namespace hilo::test
+}  // namespace hilo::test::step_errors_test

@@ -7,7 +7,7 @@
 #include "folder.hpp"
 #include "verify/block_mesh.hpp"
 
-namespace hilo::test {
+namespace hilo::test::stress_recovery_test {
 namespace {
 
 constexpr double E = 2e11, nu = 0.3, k = 1e-6;
@@ -163,4 +163,4 @@ TEST(Recovery, NeverLooksAcrossARegion) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::stress_recovery_test

@@ -5,7 +5,7 @@
 
 #include "dynamics/scenes.hpp"
 
-namespace hilo::test {
+namespace hilo::test::tolerance_test {
 namespace {
 
 /// A scene file and the histories whose points are compared with those of Radau IIA5 at a small fixed step.
@@ -316,4 +316,4 @@ TEST(Events, RoundedTimesKeepTheStep) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::tolerance_test

@@ -5,7 +5,7 @@
 #include "model/local_mesh.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::words_test {
 namespace {
 
 TEST(Words, OfSolversAreTheSolversAndAuto) {
@@ -34,4 +34,4 @@ TEST(Words, OfFieldsAreTheKeysOfTheirSources) {
 TEST(Words, ThatNoLightSolverHasAreRefused) { EXPECT_THROW(make_light_solver("colesky"), Error); }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::words_test

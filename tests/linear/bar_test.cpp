@@ -3,7 +3,7 @@
 #include "../ranks.hpp"
 #include "problem.hpp"
 
-namespace hilo {
+namespace hilo::test::bar_test {
 namespace {
 
 using test::elastic_bar;
@@ -166,4 +166,4 @@ TEST(Bar, LightAndDirectAgree) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::bar_test

@@ -6,7 +6,7 @@
 
 #include "problem.hpp"
 
-namespace hilo {
+namespace hilo::test::block_csr_test {
 namespace {
 
 TEST(BlockCsr, MultipliesAsTheSumOfItsCliques) {
@@ -43,4 +43,4 @@ TEST(BlockCsr, MultipliesAsTheSumOfItsCliques) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::block_csr_test

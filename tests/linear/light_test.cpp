@@ -6,7 +6,7 @@
 
 #include "problem.hpp"
 
-namespace hilo {
+namespace hilo::test::light_test {
 namespace {
 
 using test::elastic_bar;
@@ -180,4 +180,4 @@ TEST(Light, FactorsServeWhatSlides) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::light_test

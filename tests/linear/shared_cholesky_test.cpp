@@ -8,7 +8,7 @@
 #include "../ranks.hpp"
 #include "problem.hpp"
 
-namespace hilo {
+namespace hilo::test::shared_cholesky_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -125,4 +125,4 @@ TEST(SharedFactorOnRanks, IsTheSameBitByBit) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::shared_cholesky_test

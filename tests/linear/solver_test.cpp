@@ -6,7 +6,7 @@
 #include "base/error.hpp"
 #include "problem.hpp"
 
-namespace hilo {
+namespace hilo::test::solver_test {
 namespace {
 
 using test::Problem;
@@ -219,4 +219,4 @@ TEST(Ranks, SolversHoldTheirPromisesOnOneTwoAndThreeRanks) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::solver_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hilo::test {
+namespace hilo::test::sparse_cholesky_test {
 namespace {
 
 /// The five-point Laplacian of m x m points less `shift`.
@@ -45,4 +45,4 @@ TEST(SparseCholesky, RefusesWhatIsNotDefinite) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::sparse_cholesky_test

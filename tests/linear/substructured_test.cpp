@@ -3,7 +3,7 @@
 #include "../ranks.hpp"
 #include "problem.hpp"
 
-namespace hilo {
+namespace hilo::test::substructured_test {
 namespace {
 
 using test::elastic_bar;
@@ -233,4 +233,4 @@ TEST(Substructured, HandsOverWhatIsNotPositiveDefinite) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::substructured_test

@@ -9,7 +9,7 @@
 #include "model/local_mesh.hpp"
 #include "model/partition.hpp"
 
-namespace hilo {
+namespace hilo::test::distribute_test {
 namespace {
 
 using test::block;
@@ -267,4 +267,4 @@ TEST(Partition, BisectionBalancesUnequalWorkOnAnyNumberOfParts) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::distribute_test

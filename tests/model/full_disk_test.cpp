@@ -13,7 +13,7 @@
 #include "folder.hpp"
 #include "model/store.hpp"
 
-namespace hilo {
+namespace hilo::test::full_disk_test {
 namespace {
 
 using test::Folder;
@@ -91,4 +91,4 @@ TEST(TextFile, IsWrittenWholeOrNotAtAll) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::full_disk_test

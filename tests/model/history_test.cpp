@@ -11,14 +11,13 @@
 #include "base/spline.hpp"
 #include "model/scene.hpp"
 
-using namespace hilo;
+namespace hilo::test::history_test {
+namespace {
 using std::numbers::pi;
 
-namespace {
 const History ramp{{0, 2, 3}, {0, 4, 1}, Ramp::linear};
 const History step{{0, 1, 1, 2}, {0, 0, 5, 5}, Ramp::linear};
 const History smooth{{0, 2, 3}, {0, 4, 1}, Ramp::smooth}, smoother{{0, 2, 3}, {0, 4, 1}, Ramp::smoother};
-}  // namespace
 
 TEST(History, IsConstantOutsideItsPoints) {
   for (const History* h : {&ramp, &smooth, &smoother}) {
@@ -228,3 +227,6 @@ TEST(History, MonotoneStaysBetweenItsPoints) {
   h.slopes = spline_slopes(h.t, h.value, SplineEnds::natural);
   EXPECT_LT(h(0.5), -0.01);
 }
+
+}  // namespace
+}  // namespace hilo::test::history_test

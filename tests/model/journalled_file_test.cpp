@@ -15,7 +15,7 @@
 #include "folder.hpp"
 #include "model/store.hpp"
 
-namespace hilo::test {
+namespace hilo::test::journalled_file_test {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -186,4 +186,4 @@ TEST(GrowingFile, IsOfOneWriterAtATime) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::journalled_file_test

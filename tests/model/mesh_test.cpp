@@ -9,7 +9,7 @@
 #include "model/mesh_tags.hpp"
 #include "model/store.hpp"
 
-namespace hilo {
+namespace hilo::test::mesh_test {
 namespace {
 
 using test::block;
@@ -238,4 +238,4 @@ TEST(Tags, BoxTakesRegionsThatLieWhollyInside) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::mesh_test

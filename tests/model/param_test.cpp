@@ -10,7 +10,8 @@
 
 #include "model/scene.hpp"
 
-using namespace hilo;
+namespace hilo::test::param_test {
+namespace {
 
 TEST(Units, OfEveryKeyHaveAFactorInEverySystem) {
   for (const auto& kind : scene_schema())
@@ -88,3 +89,6 @@ TEST(Schema, NamesEachKindAndKeyOnceAndSaysWhatItMeans) {
     EXPECT_EQ(keys.contains("kind"), !kind.kind.empty() || kind.section == "solver") << kind.section;
   }
 }
+
+}  // namespace
+}  // namespace hilo::test::param_test

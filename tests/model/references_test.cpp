@@ -7,6 +7,8 @@
 #include <iterator>
 #include <regex>
 
+namespace hilo::test::references_test {
+namespace {
 namespace fs = std::filesystem;
 
 TEST(References, CitedInTheCodeAreListed) {
@@ -30,3 +32,6 @@ TEST(References, CitedInTheCodeAreListed) {
     }
   EXPECT_GT(cited, 3);
 }
+
+}  // namespace
+}  // namespace hilo::test::references_test

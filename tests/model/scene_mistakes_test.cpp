@@ -3,7 +3,7 @@
 #include "scene_text.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::scene_mistakes_test {
 namespace {
 
 using Mistake = SceneText;
@@ -255,4 +255,4 @@ TEST_F(Warning, NamesGravityDampingAndWhatIsNotUsed) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::scene_mistakes_test

@@ -5,7 +5,7 @@
 
 #include "scene_text.hpp"
 
-namespace hilo::test {
+namespace hilo::test::scene_test {
 namespace {
 
 using Override = SceneText;
@@ -245,4 +245,4 @@ TEST_F(SceneText, TellsWhichKeysNothingAskedFor) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::scene_test

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 
-namespace hilo {
+namespace hilo::test::section_file_test {
 namespace {
 
 /// A file of version 2.2 of these nodes and elements, one a line: the nodes begin at line 6, the elements after two lines more.
@@ -108,4 +108,4 @@ TEST(SectionFile, RefusesWhatIsNoFaceWithItsLine) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::section_file_test

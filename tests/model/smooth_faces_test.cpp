@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hilo::test {
+namespace hilo::test::smooth_faces_test {
 namespace {
 
 SurfaceFacet quadrangle(const std::array<std::int64_t, 4>& node, const std::array<Vec3, 4>& x) {
@@ -98,4 +98,4 @@ TEST(SmoothFaces, TwoTrianglesAreNoCylinder) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::smooth_faces_test

@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "folder.hpp"
 
-namespace hilo {
+namespace hilo::test::store_test {
 namespace {
 
 using test::Folder;
@@ -343,4 +343,4 @@ TEST(CommandLine, IsQuotedSoThatAShellReadsItBack) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::store_test

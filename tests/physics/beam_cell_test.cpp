@@ -17,7 +17,7 @@ void arc_lanes4(const ArcCall&);
 void arc_lanes8(const ArcCall&);
 }  // namespace hilo
 
-namespace hilo::test {
+namespace hilo::test::beam_cell_test {
 namespace {
 
 using Poses = std::array<double, 24>;
@@ -234,4 +234,4 @@ TEST(BeamCell, EveryLaneIsTheCellAlone) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::beam_cell_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hilo::test {
+namespace hilo::test::curve_test {
 namespace {
 
 using std::numbers::pi;
@@ -84,4 +84,4 @@ TEST(Curve, NearestPointIsNormal) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::curve_test

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-namespace hilo {
+namespace hilo::test::facet_contact_test {
 namespace {
 
 using Points = std::array<Vec3, 4>;  // the point, and the corners
@@ -151,4 +151,4 @@ TEST_F(FacetContact, TangentOfLoadStepsIsTheSlopeOfTheForces) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::facet_contact_test

@@ -3,7 +3,7 @@
 #include "physics/cells.hpp"
 #include "physics/solid_kernel.hpp"
 
-namespace hilo::test {
+namespace hilo::test::foreseen_test {
 namespace {
 
 /// A bar along x from 0 to 1 whose end moves across by 0.1: to first order unstrained, of second order stretched by 0.005.
@@ -65,4 +65,4 @@ TEST(Foreseen, WithoutACorrectionTheTangentIsTheTangent) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::foreseen_test

@@ -10,7 +10,7 @@
 
 #include "physics/contact/distance.hpp"
 
-namespace hilo {
+namespace hilo::test::height_field_test {
 namespace {
 
 using Function = std::function<double(double, double)>;
@@ -157,4 +157,4 @@ TEST_F(HeightFieldTest, WhatIsFarIsFar) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::height_field_test

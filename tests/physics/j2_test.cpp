@@ -6,7 +6,7 @@
 
 #include "verify/block_mesh.hpp"
 
-namespace hilo::test {
+namespace hilo::test::j2_test {
 namespace {
 
 constexpr double E = 200e9, nu = 0.3, Y = 400e6;
@@ -259,4 +259,4 @@ TEST(J2Point, PlasticFlowKeepsTheVolume) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::j2_test

@@ -5,7 +5,7 @@
 #include "physics/impact_loss.hpp"
 #include "physics/spring.hpp"
 
-namespace hilo::test {
+namespace hilo::test::joint_force_test {
 namespace {
 
 using Values = SpringLaw::Values;
@@ -195,4 +195,4 @@ TEST(Freedom, MeasuresWhatTheJointLeavesFree) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::joint_force_test

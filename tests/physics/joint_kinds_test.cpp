@@ -6,7 +6,7 @@
 #include "model/scene.hpp"
 #include "physics/connectors.hpp"
 
-namespace hilo::test {
+namespace hilo::test::joint_kinds_test {
 namespace {
 
 TEST(JointKinds, AreThoseThatAScenesSchemaHas) {
@@ -44,4 +44,4 @@ TEST(JointKinds, HoldAsManyDirectionsAsTheyHaveRows) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::joint_kinds_test

@@ -6,7 +6,7 @@
 
 #include "physics/connectors.hpp"
 
-namespace hilo::test {
+namespace hilo::test::joint_rows_test {
 namespace {
 
 using std::numbers::pi;
@@ -214,4 +214,4 @@ TEST(CurveRows, SayWhenTheEndIsPassed) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::joint_rows_test

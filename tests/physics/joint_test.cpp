@@ -5,7 +5,7 @@
 
 #include "physics/connectors.hpp"
 
-namespace hilo::test {
+namespace hilo::test::joint_test {
 namespace {
 
 class Joint : public testing::TestWithParam<std::string> {
@@ -177,4 +177,4 @@ TEST(JointOnANode, PullsTheNodeAlongTheLine) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::joint_test

@@ -9,7 +9,7 @@ KernelFunction kernel_lanes4(Shape, size_t);
 KernelFunction kernel_lanes8(Shape, size_t);
 }  // namespace hilo
 
-namespace hilo::test {
+namespace hilo::test::lanes_test {
 namespace {
 
 template <class S>
@@ -86,4 +86,4 @@ TEST(LaneWidth, IsOneThisProcessorCanRun) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::lanes_test

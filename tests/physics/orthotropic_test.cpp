@@ -2,7 +2,7 @@
 // Orthotropic elasticity: moduli in any direction, and one that is isotropic after all.
 #include "physics/cells.hpp"
 
-namespace hilo::test {
+namespace hilo::test::orthotropic_test {
 namespace {
 
 /// Spruce, roughly.
@@ -73,4 +73,4 @@ TEST(Orthotropic, WithIsotropicModuliIsTheIsotropicLaw) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::orthotropic_test

@@ -6,7 +6,7 @@
 
 #include "verify/block_mesh.hpp"
 
-namespace hilo::test {
+namespace hilo::test::patch_fit_test {
 namespace {
 
 using Points = std::vector<Vec3>;
@@ -128,4 +128,4 @@ TEST(PatchFit, OfDegeneratePointsIsFinite) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::patch_fit_test

@@ -3,7 +3,7 @@
 #include "physics/cells.hpp"
 #include "physics/solid_kernel.hpp"
 
-namespace hilo::test {
+namespace hilo::test::patch_test {
 namespace {
 
 class Patch : public testing::TestWithParam<std::tuple<Shape, int, double>> {};  // and the amplitude of the displacement gradient
@@ -66,4 +66,4 @@ INSTANTIATE_TEST_SUITE_P(EveryShape, Patch,
                          name_of);
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::patch_test

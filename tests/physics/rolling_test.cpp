@@ -4,7 +4,7 @@
 
 #include "physics/connectors.hpp"
 
-namespace hilo::test {
+namespace hilo::test::rolling_test {
 namespace {
 
 hilo::Joint rolling(const std::string& kind, const Config& q) {
@@ -102,4 +102,4 @@ TEST(Rolling, DiscKeepsItsRimOnThePlane) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::rolling_test

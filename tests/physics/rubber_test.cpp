@@ -9,7 +9,7 @@
 #include "physics/material/ogden.hpp"
 #include "verify/block_mesh.hpp"
 
-namespace hilo::test {
+namespace hilo::test::rubber_test {
 namespace {
 
 using Law = std::variant<MooneyRivlin, Ogden>;
@@ -192,4 +192,4 @@ TEST(Rubber, EnergyAtSmallStrainHasItsDigits) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::rubber_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hilo {
+namespace hilo::test::section_face_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -162,4 +162,4 @@ TEST(SectionFace, ARoundSectionIsAlikeInAllDirections) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::section_face_test

@@ -13,7 +13,7 @@
 #include "physics/section_face.hpp"
 #include "physics/thin_walls.hpp"
 
-namespace hilo {
+namespace hilo::test::section_mesh_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -303,4 +303,4 @@ TEST(SectionMesh, StressHasItsResultants) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::section_mesh_test

@@ -3,7 +3,7 @@
 #include "physics/cell_strain.hpp"
 #include "physics/cells.hpp"
 
-namespace hilo::test {
+namespace hilo::test::shape_test {
 namespace {
 
 template <class S>
@@ -148,4 +148,4 @@ TEST(LeastDet, OfHex20rSeesAFoldBetweenThePointsOfTheStress) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::shape_test

@@ -6,7 +6,7 @@
 #include "physics/dual.hpp"
 #include "physics/solid_kernel.hpp"
 
-namespace hilo::test {
+namespace hilo::test::shell_test {
 namespace {
 
 /// One cell by a kernel, the same in all lanes.
@@ -154,4 +154,4 @@ TEST(Shell, TangentIsTheDerivativeOfTheForce) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::shell_test

@@ -5,7 +5,7 @@
 #include "physics/cells.hpp"
 #include "physics/dual.hpp"
 
-namespace hilo::test {
+namespace hilo::test::solid_test {
 namespace {
 
 template <class S_, class M_>
@@ -215,4 +215,4 @@ TYPED_TEST(Solid, MassAndItsFirstMomentAreThoseOfTheVolume) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::solid_test

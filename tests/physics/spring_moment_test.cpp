@@ -4,7 +4,7 @@
 #include "physics/coordinates.hpp"
 #include "physics/spring.hpp"
 
-namespace hilo::test {
+namespace hilo::test::spring_moment_test {
 namespace {
 
 using Values = SpringLaw::Values;
@@ -116,4 +116,4 @@ TEST(CompliantJoint, MomentGrowsWithTheAngle) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::spring_moment_test

@@ -5,7 +5,7 @@
 #include "physics/connectors.hpp"
 #include "physics/coordinates.hpp"
 
-namespace hilo::test {
+namespace hilo::test::spring_test {
 namespace {
 
 using Values = SpringLaw::Values;
@@ -311,4 +311,4 @@ TEST(Support, NeverPulls) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::spring_test

@@ -4,7 +4,7 @@
 
 #include "physics/cells.hpp"
 
-namespace hilo::test {
+namespace hilo::test::stress_test {
 namespace {
 
 class Stress : public testing::TestWithParam<Shape> {
@@ -227,4 +227,4 @@ TEST(Bar, OfANeoHookeanMaterialKeepsEnergy) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::stress_test

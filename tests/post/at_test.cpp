@@ -13,7 +13,7 @@
 #include "sample_run.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::at_test {
 namespace {
 
 using Points = std::vector<Vec3>;
@@ -268,4 +268,4 @@ TEST(Instants, OfTimesAreThoseOfEveryCommand) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::at_test

@@ -11,7 +11,7 @@
 #include "post/run/playback.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::beams_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -149,4 +149,4 @@ TEST_F(DrawnBeams, FollowTheHelixOfEachCell) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::beams_test

@@ -11,7 +11,7 @@
 #include "sample_run.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::beside_test {
 namespace {
 
 Ran post(const Workplace& where, const std::string& rest) { return where.run("unset DISPLAY\nhilo-post " + rest); }
@@ -170,4 +170,4 @@ TEST(Colours, that_diverge_fall_evenly_from_white_and_tell_signs_apart_without_r
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::beside_test

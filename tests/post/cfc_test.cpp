@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 
-namespace hilo {
+namespace hilo::test::cfc_test {
 namespace {
 
 TEST(Cfc, coefficients_are_those_of_SAE_J211) {
@@ -119,4 +119,4 @@ TEST(Clip, of_a_record_shorter_than_three_milliseconds_is_not_a_number) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::cfc_test

@@ -8,7 +8,7 @@
 #include "post/scene/names.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::chart_test {
 namespace {
 
 TEST(Ticks, are_round_inside_the_range_and_near_the_wanted_number) {
@@ -220,4 +220,4 @@ TEST(Chart, a_mistyped_column_is_an_error_with_the_nearest_one) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::chart_test

@@ -8,7 +8,7 @@
 #include "sample_run.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::export_test {
 namespace {
 
 TEST(Export, vtu_is_read_by_VTK_with_all_fields) {
@@ -65,4 +65,4 @@ TEST(Export, a_step_that_is_not_there_is_an_error_and_leaves_nothing) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::export_test

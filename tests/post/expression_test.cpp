@@ -12,7 +12,7 @@
 #include "sample_run.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::expression_test {
 namespace {
 
 const std::vector<double> times{0, 0.5, 1.5, 2};
@@ -160,4 +160,4 @@ TEST(Compare, ARunDiffersFromItselfByNothing) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::expression_test

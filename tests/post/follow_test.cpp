@@ -8,7 +8,7 @@
 #include "post/scene/run_view.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::follow_test {
 namespace {
 
 /// Half a turn about z in four seconds, about (2, 0, 0), going along y.
@@ -203,4 +203,4 @@ time = {end = 0.5, step = 0.01}
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::follow_test

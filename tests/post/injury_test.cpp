@@ -9,7 +9,7 @@
 
 #include "post/injury/cfc.hpp"
 
-namespace hilo {
+namespace hilo::test::injury_test {
 namespace {
 
 struct Signal {
@@ -110,4 +110,4 @@ TEST(LevelHeld, of_a_trapezoid_is_its_plateau_for_as_long_as_that_lasts) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::injury_test

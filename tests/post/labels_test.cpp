@@ -6,7 +6,7 @@
 
 #include "post/scene/numbered_faces.hpp"
 
-namespace hilo::test {
+namespace hilo::test::labels_test {
 namespace {
 
 double nearest(const std::vector<Vec2>& at) {
@@ -34,4 +34,4 @@ TEST(Labels, of_a_small_part_are_spread_and_others_stay) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::labels_test

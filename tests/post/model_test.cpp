@@ -10,7 +10,7 @@
 #include "scene_parts.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::model_test {
 namespace {
 
 const std::string scene_text = "title = \"Sample\"\nmesh = \"mesh.h5\"\ngravity = [0, 0, -9.81]\n" + solid(2.1e11, 0.3, 7850) +
@@ -163,4 +163,4 @@ TEST(Model, a_joint_to_a_set_that_is_not_there_is_an_error) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::model_test

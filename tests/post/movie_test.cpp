@@ -11,7 +11,7 @@
 #include "post/picture/workers.hpp"
 #include "sample_run.hpp"
 
-namespace hilo::test {
+namespace hilo::test::movie_test {
 namespace {
 
 const Workplace& place() {  // outputs at 0, 25, 50, 75, 100 ms
@@ -123,4 +123,4 @@ TEST(Workers, give_their_results_in_order_and_their_errors_as_they_were) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::movie_test

@@ -4,7 +4,7 @@
 #include "sample_run.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::peak_test {
 namespace {
 
 TEST(Peak, is_the_largest_value_of_each_flexible_region_with_its_place_and_time) {
@@ -44,4 +44,4 @@ TEST(Chart, reads_a_pipe) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::peak_test

@@ -8,7 +8,7 @@
 #include "scene_parts.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::quantity_test {
 namespace {
 
 const std::string bodies = body("held", 2, Vec3::Zero(), {1, 1, 1}) + body("flies", 1, {3, 4, 0}, {1, 1, 1}) +
@@ -120,4 +120,4 @@ TEST(Quantity, stress_is_the_peak_of_hilo_post_and_of_rigid_regions_there_is_non
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::quantity_test

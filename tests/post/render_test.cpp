@@ -4,7 +4,7 @@
 #include "sample_run.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::render_test {
 namespace {
 
 /// A run in a folder, made once for all tests here.
@@ -156,4 +156,4 @@ TEST(Render, a_mesh_that_has_gone_is_named) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::render_test

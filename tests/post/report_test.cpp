@@ -9,7 +9,7 @@
 #include "sample_run.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::report_test {
 namespace {
 
 const Workplace& sample_place() {
@@ -100,4 +100,4 @@ TEST(InjuryReport, page_has_the_ratio_of_A4_and_white_margins) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::report_test

@@ -13,7 +13,7 @@
 #include "post/surface/skin.hpp"
 #include "sample_run.hpp"
 
-namespace hilo::test {
+namespace hilo::test::section_test {
 namespace {
 
 /// Area of the polygons that satisfy a test on their corners.
@@ -185,4 +185,4 @@ TEST(Iso, of_a_sphere_comes_near_to_it_and_is_drawn_or_refused) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::section_test

@@ -9,7 +9,7 @@
 #include "sample_run.hpp"
 #include "succeeded.hpp"
 
-namespace hilo::test {
+namespace hilo::test::series_test {
 namespace {
 
 const Workplace& sample_place() {
@@ -129,4 +129,4 @@ TEST(Gload, an_unknown_sensor_is_an_error_with_the_nearest_one) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::series_test

@@ -9,7 +9,7 @@
 
 #include "sample_run.hpp"
 
-namespace hilo {
+namespace hilo::test::skin_test {
 namespace {
 
 using Points = std::vector<Vec3>;
@@ -104,4 +104,4 @@ TEST(Skin, shows_the_face_between_two_regions_only_where_one_is_hidden) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::skin_test

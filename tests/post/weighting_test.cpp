@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace hilo {
+namespace hilo::test::weighting_test {
 namespace {
 
 constexpr double bands[] = {0.5, 0.63, 0.8, 1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8, 10, 12.5, 16, 20, 25, 31.5, 40, 50, 63, 80};
@@ -75,4 +75,4 @@ TEST(Vibration, running_value_finds_the_loud_second) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::weighting_test

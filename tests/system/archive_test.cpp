@@ -6,7 +6,7 @@
 #include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::archive_test {
 namespace {
 
 const std::string scene =
@@ -86,4 +86,4 @@ TEST(ArchiveTest, ValuesOfAnotherSceneAreRefused) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::archive_test

@@ -4,7 +4,7 @@
 #include "system/system.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::asked_nodes_test {
 namespace {
 
 class AskedNodes : public testing::Test {
@@ -40,4 +40,4 @@ TEST_F(AskedNodes, AreNotThoseOfARegionThatASetBelongsToOrWhoseStressIsAskedFor)
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::asked_nodes_test

@@ -7,7 +7,7 @@
 #include "system/untouched.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::growth_test {
 namespace {
 
 double processor_seconds(int who) {
@@ -141,4 +141,4 @@ TEST(Growth, OfADecksSpringsIsLinear) {
   EXPECT_LT(growth(RUSAGE_CHILDREN, import(2000), import(8000)), 6);
 }
 
-}  // namespace hilo::test
+}  // namespace hilo::test::growth_test

@@ -12,7 +12,7 @@
 #include "system/somewhere_off.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::laws_test {
 namespace {
 
 const char* const base = R"(
@@ -373,4 +373,4 @@ std::vector<std::string> integrators() {
 INSTANTIATE_TEST_SUITE_P(Integrators, Laws, testing::ValuesIn(integrators()), [](const auto& p) { return as_name(p.param); });
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::laws_test

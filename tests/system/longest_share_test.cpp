@@ -5,7 +5,7 @@
 #include "system/system.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::longest_share_test {
 namespace {
 
 class LongestShare : public testing::TestWithParam<Shape> {
@@ -43,4 +43,4 @@ TEST_P(LongestShare, KeepsCellsWhole) {
 INSTANTIATE_TEST_SUITE_P(Shapes, LongestShare, testing::Values(Shape::hex8, Shape::tet4, Shape::wedge6));
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::longest_share_test

@@ -8,7 +8,7 @@
 #include "system/reduction.hpp"
 #include "verify/block_mesh.hpp"
 
-namespace hilo::test {
+namespace hilo::test::quadratic_strain_test {
 namespace {
 
 using Vector = Eigen::VectorXd;
@@ -104,4 +104,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, StiffeningBar, testing::Values(Shape::hex8, Sha
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::quadratic_strain_test

@@ -6,7 +6,7 @@
 #include "system/somewhere_off.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::tangent_test {
 namespace {
 
 const char* const everything = R"(
@@ -179,4 +179,4 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Tangent,
                          [](const auto& p) { return as_name(std::string(std::get<0>(p.param)) + "_" + std::get<1>(p.param)); });
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::tangent_test
