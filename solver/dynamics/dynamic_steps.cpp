@@ -161,19 +161,10 @@ class DynamicSteps final : public Steps {
   void record_start() {
     Config a;
     std::vector<double> lambda;
-    const bool known = run_.is_rigid && !run_.redundancy.singular() && has_accelerations(a, lambda);
+    const bool known =
+        run_.is_rigid && !run_.redundancy.singular() && find_acceleration(run_.system, *run_.solver, run_.state, a, lambda).empty();
     const Instant there(run_.state, std::move(a));
     run_.recorder->first(run_.state, run_.audit->ledger(), known ? &there.stage : nullptr, lambda);
-  }
-
-  /// False where masses and joints do not determine them.
-  bool has_accelerations(Config& a, std::vector<double>& lambda) const {
-    try {
-      solve_acceleration(run_.system, *run_.solver, run_.state, a, lambda);
-      return true;
-    } catch (const Error&) {
-      return false;
-    }
   }
 
   /// Steps of equal length from `from` to `to`, up to a thousandth of one longer than asked for: the times of a table are rounded, and one

@@ -86,9 +86,18 @@ namespace {
 constexpr double exact = 1e-9;  // of a linear solve; one that leaves more, as CG does in single precision, is asked again for what is left
 constexpr int most_solves = 5;
 
-/// Velocities go to the nearest ones, in the mass norm, that the rows allow: nearest to v - moved.  Returns the largest change; 0, without
-/// a solve, where nothing moves unless `even_at_rest`.
-double to_allowed(const System& system, KktSolver& solver, const Config& q, Config& v, Config moved, double t, bool even_at_rest) {
+struct Reached {
+  double change = 0;     // the largest
+  std::string why = {};  // masses and joints do not determine it
+};
+
+void require(const std::string& why) {
+  if (!why.empty()) throw Error("", why, "a part may have no mass or inertia");
+}
+
+/// Velocities go to the nearest ones, in the mass norm, that the rows allow: nearest to v - moved.  Without a solve where nothing moves
+/// unless `even_at_rest`.
+Reached to_allowed(const System& system, KktSolver& solver, const Config& q, Config& v, Config moved, double t, bool even_at_rest) {
   Config zero;
   combine(zero, {{0, &v}});
   std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), none = lambda, b, z(3 * system.n_blocks(), 0.0), rate;
@@ -112,7 +121,7 @@ double to_allowed(const System& system, KktSolver& solver, const Config& q, Conf
     const auto is_zero = [](double x) { return x == 0; };
     if (pass == 0 && !even_at_rest &&
         system.comm->max(std::all_of(rate.begin(), rate.end(), is_zero) && std::all_of(b.begin(), b.end(), is_zero) ? 0 : 1) == 0)
-      return 0;
+      return {};
     if (pass == 0) {
       Residual r;
       system.evaluate(mass_stage(q, zero, 0), none, r, &solver);
@@ -122,16 +131,23 @@ double to_allowed(const System& system, KktSolver& solver, const Config& q, Conf
     for (size_t k = 0; k < on.size(); ++k) b[first + k] = on[k] ? -sigma * rate[k] : 0;
     const SolveReport solved = solver.solve(b, z);
     if (!solved.ok)
-      throw Error("",
-                  fmt::format("the joints and masses do not determine the motion: {}{}", solved.message, free_part(system, solver, sigma)),
-                  "a part may have no mass or inertia");
+      return {0, fmt::format("the joints and masses do not determine the motion: {}{}", solved.message, free_part(system, solver, sigma))};
     const double by = system.comm->max(system.add_rates(v, q, z));
     if (pass == 0) change = by;
     system.add_rates(moved, q, z);
     for (size_t k = 0; k < lambda.size(); ++k) lambda[k] += sigma * z[first + k];
     left *= solved.residual;
   }
-  return change;
+  return {change};
+}
+
+Reached to_nearest(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {
+  Config given, moved;
+  combine(given, {{0, &v}});
+  system.prescribe_rates(t, Side::left, &given, nullptr);
+  combine(moved, {{1, &given}, {-1, &v}});
+  v = given;
+  return to_allowed(system, solver, q, v, std::move(moved), t, true);
 }
 
 }  // namespace
@@ -140,16 +156,13 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
   Config moved = v;  // what moves by a law is felt by what shares mass with it
   system.prescribe_rates(t, Side::right, &v, nullptr);
   combine(moved, {{1, &v}, {-1, &moved}});
-  return to_allowed(system, solver, q, v, std::move(moved), t, false);
+  const Reached reached = to_allowed(system, solver, q, v, std::move(moved), t, false);
+  require(reached.why);
+  return reached.change;
 }
 
 void nearest_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {
-  Config given, moved;
-  combine(given, {{0, &v}});
-  system.prescribe_rates(t, Side::left, &given, nullptr);
-  combine(moved, {{1, &given}, {-1, &v}});
-  v = given;
-  to_allowed(system, solver, q, v, std::move(moved), t, true);
+  require(to_nearest(system, solver, q, v, t).why);
 }
 
 namespace {
@@ -193,7 +206,8 @@ Instant::Instant(const State& s, Config accelerations) : a(std::move(acceleratio
   stage.a = &a;
 }
 
-void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda, bool has_mass) {
+std::string find_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda,
+                              bool has_mass) {
   // guess: bodies that keep their spin, everything else unaccelerated; the solve adds the rest
   combine(a, {{0, &s.v}});
   for (const UnknownField& f : system.unknowns)
@@ -230,8 +244,8 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
     for (size_t i = 0; i < on.size(); ++i) r.r[first + i] = on[i] ? r.sigma * acceleration[i] : 0;
     const SolveReport solved = correct(solver, r.r, z);
     if (!solved.ok && !solve_beside_massless(system, solver, stage, lambda, r, z))
-      throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}{}", solved.message,
-                                  free_part(system, solver, r.sigma)));
+      return fmt::format("the joints and masses do not determine the accelerations: {}{}", solved.message,
+                         free_part(system, solver, r.sigma));
     system.add_rates(a, s.q, z);
     double change = 0, size = 0;
     for (size_t i = 0; i < lambda.size(); ++i) {
@@ -241,6 +255,11 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
     if (pressed ? change <= 1e-12 * size : !solved.ok) break;
     if (!pressed) left *= solved.residual;
   }
+  return {};
+}
+
+void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda, bool has_mass) {
+  if (const std::string why = find_acceleration(system, solver, s, a, lambda, has_mass); !why.empty()) throw Error("", why);
 }
 
 namespace {
@@ -251,11 +270,7 @@ Config part_across(const System& system, KktSolver& solver, const State& s) {
   combine(out, {{1, &s.v}, {1, &s.jerk}});
   system.prescribe_rates(s.t, Side::left, &out, nullptr);
   near = out;
-  try {
-    nearest_velocities(system, solver, s.q, near, s.t);
-  } catch (const Error&) {
-    near = out;
-  }
+  if (!to_nearest(system, solver, s.q, near, s.t).why.empty()) near = out;
   combine(out, {{1, &out}, {-1, &near}});
   return out;
 }

@@ -15,8 +15,11 @@ double assemble_positions(System& system, KktSolver& solver, Config& q);
 /// Velocities from time t on, in the mass norm: those of the laws for what moves by one, and consistent with the joints and what drives
 /// them for the rest; returns the largest change of what is free [m/s].
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);
-/// Accelerations and multipliers that satisfy equations and constraints at (s.q, s.v) at time s.t.  `has_mass`: the solver holds the matrix
-/// of mass and rows at s.q.
+/// Accelerations and multipliers that satisfy equations and constraints at (s.q, s.v) at time s.t; returns why masses and joints do not
+/// determine them, or nothing.  `has_mass`: the solver holds the matrix of mass and rows at s.q.
+std::string find_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda,
+                              bool has_mass = false);
+/// The same; Error where they are not determined.
 void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda,
                         bool has_mass = false);
 /// A stage at an instant, with accelerations: what is there, at rest or in motion.
