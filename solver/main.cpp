@@ -23,8 +23,8 @@
 #include "model/scene_sets.hpp"
 #include "model/store.hpp"
 #include "post/quantity/quantity.hpp"
-#include "system/contact_entries.hpp"
-#include "system/untouched.hpp"
+#include "system/contact/contact_entries.hpp"
+#include "system/contact/untouched.hpp"
 
 namespace hilo {
 namespace {

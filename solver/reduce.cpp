@@ -11,11 +11,11 @@
 #include "base/args.hpp"
 #include "base/error.hpp"
 #include "base/on_ranks.hpp"
-#include "dynamics/region_shapes.hpp"
+#include "dynamics/modes/region_shapes.hpp"
 #include "linear/blas_kernels.hpp"
 #include "model/inputs.hpp"
 #include "model/store.hpp"
-#include "system/factor_room.hpp"
+#include "system/build/factor_room.hpp"
 
 namespace hilo {
 namespace {

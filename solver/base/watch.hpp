@@ -23,7 +23,7 @@ class Watch {
     calls_.fetch_add(1, std::memory_order_release);
   }
   void goes_on() { calls_.fetch_add(1, std::memory_order_release); }
-  /// "system/build.cpp:58".
+  /// "system/build/build.cpp:58".
   static std::string text(const std::source_location& at);
   /// Waits longer than this are told [s].
   static inline std::atomic<double> patience = 60;

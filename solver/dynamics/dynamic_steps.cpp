@@ -7,15 +7,15 @@
 #include <ranges>
 
 #include "dynamics/choose_solver.hpp"
-#include "dynamics/companion.hpp"
-#include "dynamics/contradiction.hpp"
+#include "dynamics/error/companion.hpp"
+#include "dynamics/error/phase_error.hpp"
+#include "dynamics/error/step_errors.hpp"
 #include "dynamics/integrator_kinds.hpp"
-#include "dynamics/phase_error.hpp"
 #include "dynamics/predictor.hpp"
+#include "dynamics/redundancy/contradiction.hpp"
+#include "dynamics/redundancy/singular_start.hpp"
 #include "dynamics/run_parts.hpp"
-#include "dynamics/singular_start.hpp"
-#include "dynamics/start.hpp"
-#include "dynamics/step_errors.hpp"
+#include "dynamics/start/start.hpp"
 
 namespace hilo {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "dynamics/start.hpp"
+#include "dynamics/start/start.hpp"
 
 namespace hilo {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dynamics/linear_step.hpp"
-#include "dynamics/start.hpp"
+#include "dynamics/start/start.hpp"
 #include "system/revising.hpp"
 
 namespace hilo {

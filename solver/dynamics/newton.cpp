@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/free_part.hpp"
 #include "dynamics/linear_step.hpp"
+#include "dynamics/redundancy/free_part.hpp"
 #include "system/revising.hpp"
 
 namespace hilo {

@@ -12,12 +12,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/held.hpp"
 #include "dynamics/jump.hpp"
 #include "dynamics/linear_step.hpp"
 #include "dynamics/run_parts.hpp"
-#include "dynamics/soft_contacts.hpp"
-#include "dynamics/start.hpp"
+#include "dynamics/start/held.hpp"
+#include "dynamics/start/soft_contacts.hpp"
+#include "dynamics/start/start.hpp"
 #include "system/load_path.hpp"
 #include "system/revising.hpp"
 #include "system/touching.hpp"

@@ -8,11 +8,11 @@
 #include <cmath>
 
 #include "dynamics/choose_solver.hpp"
-#include "dynamics/contradiction.hpp"
 #include "dynamics/integrator_kinds.hpp"
 #include "dynamics/profile.hpp"
+#include "dynamics/redundancy/contradiction.hpp"
 #include "dynamics/run_parts.hpp"
-#include "dynamics/start.hpp"
+#include "dynamics/start/start.hpp"
 #include "system/modal_damping.hpp"
 #include "system/revising.hpp"
 #include "system/springs.hpp"

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "dynamics/audit.hpp"
+#include "dynamics/error/step_control.hpp"
 #include "dynamics/impulse.hpp"
 #include "dynamics/progress.hpp"
 #include "dynamics/record/recorder.hpp"
-#include "dynamics/redundancy.hpp"
+#include "dynamics/redundancy/redundancy.hpp"
 #include "dynamics/run.hpp"
-#include "dynamics/step_control.hpp"
 #include "dynamics/step_plan.hpp"
 
 namespace hilo {

@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/from_rest.hpp"
-#include "dynamics/held.hpp"
 #include "dynamics/jump.hpp"
 #include "dynamics/run_parts.hpp"
-#include "dynamics/soft_contacts.hpp"
-#include "dynamics/stability.hpp"
-#include "dynamics/start.hpp"
+#include "dynamics/start/from_rest.hpp"
+#include "dynamics/start/held.hpp"
+#include "dynamics/start/soft_contacts.hpp"
+#include "dynamics/start/stability.hpp"
+#include "dynamics/start/start.hpp"
 #include "system/touching.hpp"
 
 namespace hilo {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/error_estimate.hpp"
+#include "dynamics/error/error_estimate.hpp"
 #include "model/scene.hpp"
 #include "system/system.hpp"
 

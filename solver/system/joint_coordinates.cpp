@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/joint_coordinates.hpp"
 
-#include "system/builder.hpp"
+#include "system/build/builder.hpp"
 
 namespace hilo {
 

@@ -11,7 +11,7 @@
 
 #include "system/beam_cells.hpp"
 #include "system/contribution.hpp"
-#include "system/point_cell.hpp"
+#include "system/reduction/point_cell.hpp"
 
 namespace hilo {
 

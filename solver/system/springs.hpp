@@ -2,8 +2,8 @@
 // Springs, dampers, stops, motors, friction and joints that give way: forces of connectors, without rows.
 #pragma once
 #include "physics/spring.hpp"
+#include "system/contact/surface_pair.hpp"
 #include "system/joints.hpp"
-#include "system/surface_pair.hpp"
 
 namespace hilo {
 

@@ -9,7 +9,9 @@ import re
 import sys
 
 repo = os.path.abspath(sys.argv[1])
-TOGETHER = ["solver/base", "solver/model", "solver/dynamics", "tools/import", "post", "tests/tools", "tests/verify"]  # others are compiled one by one
+TOGETHER = ["solver/base", "solver/model", "solver/dynamics", "tools/import", "post"]  # others are compiled one by one
+TOGETHER += ["solver/system/build", "solver/system/reduction"]
+TOGETHER += [f"tests/{room}" for room in ("model", "physics", "linear", "system", "dynamics", "tools", "geometry", "post", "verify")]
 
 
 def declared(path):

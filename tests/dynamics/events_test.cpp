@@ -3,7 +3,7 @@
 // that is added to it, and is not known here, fails.
 #include <sstream>
 
-#include "dynamics/step_control.hpp"
+#include "dynamics/error/step_control.hpp"
 #include "model/local_mesh.hpp"
 #include "verify/verify.hpp"
 

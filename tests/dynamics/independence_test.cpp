@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Independent columns of sparse matrices, dense and sparse alike: what is called dependent is the sum that it is said to be.
 // With assertions on (make -C tests sanitize) Eigen also stops where a part is taken of a matrix whose columns are not sorted.
-#include "dynamics/independence.hpp"
+#include "dynamics/redundancy/independence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Newton's method believes no solver that leaves forces open and calls that solved.
-#include "dynamics/start.hpp"
+#include "dynamics/start/start.hpp"
 #include "scene_parts.hpp"
 #include "system/dense_kkt.hpp"
 #include "verify/verify.hpp"

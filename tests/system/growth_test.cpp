@@ -3,8 +3,8 @@
 #include <sys/resource.h>
 
 #include "model/local_mesh.hpp"
+#include "system/contact/untouched.hpp"
 #include "system/system.hpp"
-#include "system/untouched.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::growth_test {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "linear/shared_cholesky.hpp"
-#include "system/reduction.hpp"
+#include "system/reduction/reduction.hpp"
 #include "verify/block_mesh.hpp"
 
 namespace hilo::test::quadratic_strain_test {

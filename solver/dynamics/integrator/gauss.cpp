@@ -19,7 +19,7 @@
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/integrator/stage_directors.hpp"
 #include "dynamics/profile.hpp"
-#include "dynamics/start.hpp"
+#include "dynamics/start/start.hpp"
 #include "system/collocation.hpp"
 
 namespace hilo {

@@ -7,9 +7,9 @@
 #include <deque>
 #include <optional>
 
-#include "dynamics/minimum_norm.hpp"
 #include "dynamics/record/histories.hpp"
 #include "dynamics/record/mesh_part.hpp"
+#include "dynamics/redundancy/minimum_norm.hpp"
 #include "system/solids.hpp"
 
 namespace hilo {

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Entries of the scene to point masses and stations.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "system/build/builder.hpp"
+#include "system/point_masses.hpp"
+#include "system/stations.hpp"
+
+namespace hilo {
+const History& Builder::use_history(const Entry& e, Acts acts) {
+  const History& h = e.history("history");
+  const bool is_static = this->is_static();
+  for (const History::Break& b : h.breaks())
+    if (b.order == 0 && acts == Acts::as_position && !is_static)
+      throw Error(e.where("history"),
+                  fmt::format("{}: the history jumps at t = {:.6g}, so the position it prescribes would jump too", e.label(), b.t),
+                  "let the values rise gradually, with interpolation = \"smooth\"");
+  out_->histories.push_back({e.label(), h, acts});
+  return h;
+}
+
+/// Mass at points of a body: its sum, centre and inertia with theirs.
+void Builder::add_mass(Body& body, const std::vector<std::pair<Vec3, double>>& points) {
+  double m = 0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();  // about the centre of the body, sum m d d^T
+  for (const auto& [at, mass] : points) {
+    const Vec3 d = at - body.Xc;
+    m += mass, first += mass * d, second += mass * d * d.transpose();
+  }
+  m = comm_.sum(m), comm_.sum(std::span<double>(first.data(), 3)), comm_.sum(std::span<double>(second.data(), 9));
+  const double total = body.mass + m;
+  const Vec3 shift = first / total;
+  body.J += second - total * shift * shift.transpose();
+  body.mass = total;
+  body.Xc += shift;
+}
+
+void Builder::add_point_masses() {
+  for (const Entry& e : scene_.entries("point_mass")) {
+    const Found found = find(e.text("on"), e.where("on"));
+    const double m = e.number("mass");
+    out_->mass += m;
+    if (found.body == 0) throw Error(e.where("on"), e.label() + ": the ground has no mass");
+    if (found.body < 0 && e.has("at"))
+      throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, its nodes share the mass", e.label(), e.text("on")),
+                  "name a set of nodes there");
+    const bool has_nodes = found.n_global > 0 && !e.has("at");
+    const auto shares = has_nodes ? shares_of(found) : std::vector<std::pair<int, double>>{};
+    if (found.body > 0) {
+      Body& body = out_->bodies[found.body];
+      std::vector<std::pair<Vec3, double>> points;
+      for (const auto& [node, share] : shares) points.emplace_back(out_->X[node], m * share);
+      if (!has_nodes && comm_.rank == 0) points.emplace_back(e.has("at") ? e.vector3("at") : point_of(found.body), m);
+      add_mass(body, points);
+      out_->start.c[found.body] = body.Xc;
+    } else {
+      for (const auto& [node, share] : shares) out_->part<PointMasses>().add(node, m * share);
+    }
+  }
+}
+
+void Builder::add_stations() {
+  for (const char* section : {"sensor", "probe"})
+    for (const Entry& e : scene_.entries(section)) {
+      Station s;
+      s.name = e.name;
+      s.sensor = std::string_view(section) == "sensor";
+      const Found found = find(e.text("on"), e.where("on"), Asks::looks);
+      if (s.sensor) {
+        const Vec3 z = direction(e, "z"), x = direction(e, "x");
+        if (std::abs(x.dot(z)) > 1 - 1e-9) throw Error(e.where("x"), e.label() + ": x is parallel to z");
+        s.axes = frame_of_axis(z, x);
+      }
+      if (found.body >= 0) {
+        s.body = found.body;
+        const Body& body = out_->bodies[s.body];
+        const Vec3 at = e.has("at") ? e.vector3("at") : found.n_global == 0 ? point_of(s.body) : centre_of(shares_of(found));
+        s.arm = at - body.Xc;
+      } else if (e.has("at")) {
+        if (s.sensor)
+          throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, and a single point of it has no axes", e.label(), e.text("on")),
+                      found.is_region ? "name a set of nodes there" : "without at it is the mean of the set, whose axes turn with it");
+        if (const int nearest = nearest_owned(found.nodes, e.vector3("at")); nearest >= 0) s.nodes.emplace_back(nearest, 1);
+        s.mean = e.vector3("at");
+      } else {
+        s.nodes = shares_of(found);
+        s.turns = found.n_global > 2;
+        s.mean = centre_of(s.nodes);
+      }
+      out_->part<Stations>().list.push_back(std::move(s));
+    }
+}
+
+}  // namespace hilo
