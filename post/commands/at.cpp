@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 
 #include "base/args.hpp"
@@ -146,14 +147,21 @@ void run(const AtOptions& o) {
   std::vector<std::vector<double>> columns((o.line.empty() ? 1 : 5) + n_values);  // t, along a line s X Y Z, values
   double largest = 0;
   for (const Step& step : steps) {
-    const RunFile::Field raw = run.field(step, shown.field.array);
+    std::map<int, RunFile::Field> of_region;  // that have values of their own; -1: of nodes
+    const auto field_at = [&](const Located& there) -> const RunFile::Field& {
+      int r = there.cell < 0 ? -1 : file.mesh.region[static_cast<size_t>(there.cell)];
+      if (run.own_nodes(r).empty()) r = -1;
+      const auto found = of_region.find(r);
+      return found != of_region.end() ? found->second : of_region.emplace(r, run.field_in(r, step, shown.field.array)).first->second;
+    };
+    const RunFile::Field& raw = field_at({});
     if (raw.value.size() != static_cast<size_t>(file.mesh.n_nodes() * raw.columns))
       throw Error(run.path, fmt::format("step {} holds {} numbers for {} nodes", step.key, raw.value.size(), file.mesh.n_nodes()),
                   "the mesh was changed after the run");
     for (size_t i = 0; i < at.X.size(); ++i) {
       std::vector<double> row{step.t};
       if (!o.line.empty()) row.insert(row.end(), {(at.X[i] - at.X[0]).norm(), at.X[i][0], at.X[i][1], at.X[i][2]});
-      for (const double x : shown.of(raw, at.where[i])) {
+      for (const double x : shown.of(field_at(at.where[i]), at.where[i])) {
         row.push_back(x);
         if (std::isfinite(x)) largest = std::max(largest, std::abs(x));
       }

@@ -42,20 +42,25 @@ void run(const PeakOptions& o) {
   const std::string envelope = o.field + "_envelope";
   const bool of_all = o.steps == "all" && o.times.empty() && run.has_field(steps.back(), envelope);
   const auto of_steps = [&](const std::vector<bool>& regions) {
-    return field_peaks(run, steps, regions, [&](const Step& step) { return reduced(run.field(step, field.array), field, run.path); });
+    return field_peaks(run, steps, regions,
+                       [&](const Step& step, int r) { return reduced(run.field_in(r, step, field.array), field, run.path); });
   };
-  auto peaks =
-      of_all ? field_peaks(run, {steps.back()}, shown, [&](const Step& step) { return run.field(step, envelope).value; }) : of_steps(shown);
+  const auto largest_of_all = [&](const Step& step, int r) {
+    auto value = run.field(step, envelope).value;
+    if (o.field == "von_mises")
+      for (const std::int64_t n : run.own_nodes(r)) value.at(static_cast<size_t>(n)) = 0;  // it is that of another region
+    return value;
+  };
+  auto peaks = of_all ? field_peaks(run, {steps.back()}, shown, largest_of_all) : of_steps(shown);
   if (of_all) {
     const auto t = run.field(steps.back(), envelope + "_time").value;
     for (FieldPeak& p : peaks)
       if (p.node >= 0) p.t = t.at(static_cast<size_t>(p.node));
-    if (of_beams) {  // which no envelope has
-      std::vector<bool> beams = shown;
-      std::fill_n(beams.begin(), n_own, false);
-      const auto theirs = of_steps(beams);
-      std::copy(theirs.begin() + static_cast<std::ptrdiff_t>(n_own), theirs.end(), peaks.begin() + static_cast<std::ptrdiff_t>(n_own));
-    }
+    std::vector<bool> others = shown;  // that no envelope has: beams, and nodes of which it has the stress of another region
+    for (size_t r = 0; r < n_own; ++r) others[r] = shown[r] && o.field == "von_mises" && !run.own_nodes(static_cast<int>(r)).empty();
+    const auto theirs = of_steps(others);
+    for (size_t r = 0; r < shown.size(); ++r)
+      if (others[r] && (r >= n_own || std::abs(theirs[r].value) > std::abs(peaks[r].value))) peaks[r] = theirs[r];
   }
   double largest = 0;
   for (const FieldPeak& p : peaks) largest = std::max(largest, std::abs(p.value));

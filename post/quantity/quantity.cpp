@@ -57,7 +57,8 @@ Column stress_column(const Entry& q, RunFile& run) {
   Column c{"von Mises stress in " + region, "Pa", {}, {}};
   for (const Step& step : run.steps) {
     c.t.push_back(step.t);
-    c.value.push_back(field_peaks(run, {step}, wanted, [&](const Step& s) { return run.field(s, "von_mises").value; })[r].value);
+    c.value.push_back(
+        field_peaks(run, {step}, wanted, [&](const Step& s, int of) { return run.field_in(of, s, "von_mises").value; })[r].value);
   }
   return c;
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "base/error.hpp"
 #include "model/mesh_source.hpp"
@@ -70,7 +71,40 @@ const MeshFile& RunFile::mesh_file() {
   mesh_->n_parts = 1;
   for (const std::int32_t r : mesh_->rank) mesh_->n_parts = std::max(mesh_->n_parts, r + 1);
   if (is_skin()) read_skin();
+  read_borders();
   return *mesh_;
+}
+
+void RunFile::read_borders() {
+  if (!store_->has("/border/row")) return;
+  std::map<std::int64_t, std::int64_t> node;  // of each row
+  for (size_t n = 0; n < held_.size(); ++n)
+    if (held_[n]) node[row_[n]] = static_cast<std::int64_t>(n);
+  const auto row = store_->read<std::int64_t>("/border/row"), region = store_->read<std::int64_t>("/border/region");
+  borders_.resize(mesh_->mesh.region_name.size());
+  for (size_t k = 0; k < row.size(); ++k) {
+    const std::int64_t n = held_.empty() ? row[k] : node.at(row[k]);
+    Border& border = borders_.at(static_cast<size_t>(region[k]));
+    border.entry.push_back(static_cast<std::int64_t>(k)), border.node.push_back(n);
+  }
+}
+
+const std::vector<std::int64_t>& RunFile::own_nodes(int region) const {
+  static const std::vector<std::int64_t> none;
+  return region < 0 || static_cast<size_t>(region) >= borders_.size() ? none : borders_[static_cast<size_t>(region)].node;
+}
+
+RunFile::Field RunFile::field_in(int region, const Step& step, const std::string& name) const {
+  Field f = field(step, name);
+  const std::string array = fmt::format("/border/{}/{}", step.key, name);
+  if (own_nodes(region).empty() || !store_->has(array)) return f;
+  const auto own = store_->read<double>(array);
+  const Border& border = borders_[static_cast<size_t>(region)];
+  const auto width = static_cast<size_t>(f.columns);
+  for (size_t k = 0; k < border.node.size(); ++k)
+    std::copy_n(own.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(border.entry[k]) * width), width,
+                f.value.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(border.node[k]) * width));
+  return f;
 }
 
 void RunFile::read_skin() {

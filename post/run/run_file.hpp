@@ -66,6 +66,10 @@ class RunFile {
     int columns;
   };
   Field field(const Step& step, const std::string& name) const;
+  /// A nodal field as a region has it: of nodes that it shares with another flexible region, its own stress; -1: as nodes have it.
+  Field field_in(int region, const Step& step, const std::string& name) const;
+  /// Nodes whose stress this region has besides that of the node.
+  const std::vector<std::int64_t>& own_nodes(int region) const;
   std::vector<std::string> fields(const Step& step) const;
   bool has_field(const Step& step, const std::string& name) const;
   /// Does the run hold the fields of a node?  One that keeps the skin of its regions alone gives each inner node the values of the nearest
@@ -95,6 +99,11 @@ class RunFile {
   std::optional<MeshFile> mesh_;
   std::vector<std::int64_t> row_;  // of the fields, for each node; empty: the node's own
   std::vector<bool> held_;         // by the fields
+  struct Border {
+    std::vector<std::int64_t> entry, node;  // of the arrays of /border
+  };
+  void read_borders();
+  std::vector<Border> borders_;  // of each region; empty: there are none
   struct Body {
     std::vector<Vec3> X;  // reference points
     Series way;           // of these points

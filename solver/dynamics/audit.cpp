@@ -52,14 +52,15 @@ void Audit::start(const State& s) {
 }
 
 std::string Audit::look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor,
-                        double taken_away) {
+                        double taken_away, const Taken* before) {
   opens_dropped_row_ = false;
   next_ = {};
   next_.energy = energy_of(system_, end, Side::left);
   next_.work = sums_.work + std::max(0.0, -taken_away), next_.dissipated = sums_.dissipated + std::max(0.0, taken_away);
   for (const Taken& part : taken) {
     const Work w = system_.work(part.stage, part.lambda);
-    next_.work += w.external, next_.dissipated += w.dissipated, next_.energy.elastic += w.stored;
+    next_.work += before ? (w.external + system_.work(before->stage, before->lambda).external) / 2 : w.external;
+    next_.dissipated += w.dissipated, next_.energy.elastic += w.stored;
   }
   next_.left = sums_.left + newton.left + opened(newton.gaps, taken);
   next_.rows = system_.violation(end.q, end.t, load_factor);

@@ -197,7 +197,7 @@ class Run {
     const Entry& time = run_.scene.table("time");
     const IntegratorKind& method = integrator_kinds().at(run_.plan.now().method, time.where("integrator"));
     run_.integrator = method.make(time);
-    run_.energy_unchecked = is_static()                          ? "a static analysis counts the work of a step with the loads at its end"
+    run_.energy_unchecked = is_static() ? "a static analysis counts the work of a step by the mean of the forces at both ends"
                             : run_.analysis != Analysis::dynamic ? "an analysis of modes or buckling has no steps"
                             : method.keeps_energy                ? ""
                                                                  : "the method does not keep it";

@@ -163,7 +163,7 @@ class StaticSteps final : public Steps {
     if (unforeseen_) jump_ = 0;
     take(reached, next);
     const std::string fault = system.fault(reached.q);
-    return fault.empty() ? run_.audit->look(state.q, reached, {&taken_, 1}, r, next) : fault;
+    return fault.empty() ? look(reached, r, next) : fault;
   }
 
   /// What memory makes of a state, and its stage for what looks at it.
@@ -174,6 +174,14 @@ class StaticSteps final : public Steps {
     taken_.stage.a = &no_acceleration_, taken_.stage.load_factor = next, taken_.stage.work_from = &run_.state.q;
   }
 
+  /// Its work is that of the mean of the forces at both ends of the step.
+  std::string look(const State& reached, const NewtonReport& r, double next) {
+    const State& state = run_.state;
+    Taken before{stage_at(state.q, state.t), state.lambda};
+    before.stage.elapsed = slow, before.stage.a = &no_acceleration_, before.stage.load_factor = at_.done, before.stage.end = &reached.q;
+    return run_.audit->look(state.q, reached, {&taken_, 1}, r, next, 0, &before);
+  }
+
   /// To the state that lies ahead: why it cannot be accepted, or "".
   std::string go_ahead(State& reached) {
     const auto& [to, next, jump] = *at_.ahead;
@@ -181,7 +189,7 @@ class StaticSteps final : public Steps {
     run_.system.commit(reached.q);
     if (jump == 0) unstable_ = Stability(run_.system, *run_.solver, reached.t, next).look(reached.q, reached.lambda);
     take(reached, next);
-    const std::string fault = run_.audit->look(run_.state.q, reached, {&taken_, 1}, {}, next);
+    const std::string fault = look(reached, {}, next);
     return fault.empty() ? leave(next, reached) : fault;
   }
 
@@ -198,7 +206,7 @@ class StaticSteps final : public Steps {
     system.settle(false);
     if (Stability(system, *run_.solver, reached.t, next).leave(*unstable_, reached.q, reached.lambda, false, run_.newton)) {
       take(reached, next);
-      if (system.fault(reached.q).empty() && run_.audit->look(run_.state.q, reached, {&taken_, 1}, {}, next).empty()) {
+      if (system.fault(reached.q).empty() && look(reached, {}, next).empty()) {
         warn(place(),
              fmt::format("{}. The run goes on from a stable one, {:.3g} m away", found, system.largest_difference(unstable.q, reached.q)));
         return "";
@@ -211,7 +219,7 @@ class StaticSteps final : public Steps {
                       "(analysis = \"path\" shows where branches part)");
     system.commit(reached.q), take(reached, next);
     at_.unstable = true;
-    return run_.audit->look(run_.state.q, reached, {&taken_, 1}, {}, next);
+    return look(reached, {}, next);
   }
   std::string jumped(double next) const {
     return fmt::format("positions jump by {:.3g} m between {:.6g} and {:.6g} of the loads", jump_, at_.done, next);

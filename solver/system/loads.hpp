@@ -21,7 +21,7 @@ struct Load {
   Vec3 arm = Vec3::Zero();   // body axes
   Vec3 line = Vec3::Zero();  // of a torque, body axes: nothing resists its part about that
   History history;
-  bool ramped = false;  // without a history: follows the load factor of a static analysis
+  bool ramped = false;  // follows the load factor: without a history, and all of modes and buckling
   double factor(double t0, double t1, double ramp) const { return (ramped ? ramp : 1) * (t1 > t0 ? history.mean(t0, t1) : history(t0)); }
 };
 

@@ -58,7 +58,7 @@ struct Stage {
   bool rates_alone = false;                  // how accelerations, rates and rows of velocities act on the equations of another stage
   double elapsed = 0;                        // of materials since their accepted state [s]; 0: nothing flows, infinite: too slow for rates
   const Correction* last = nullptr;          // Newton's, that led to e1; null: none
-  double load_factor = 1;                    // of gravity and of loads without a history, for static load steps
+  double load_factor = 1;                    // of gravity and of the loads that are ramped
   const Collocation* step = nullptr;         // of a stage that shares its step with others: rows hold increments, forces keep energy
   int member = 0;                            // which of them this is
   bool slopes_of_end = false;                // of strains that are not of the second degree, where `weight` takes a mean: for buckling

@@ -12,7 +12,7 @@ struct Station {
   int body = -1;
   Vec3 arm = Vec3::Zero();                    // body axes
   std::vector<std::pair<int, double>> nodes;  // of this rank, and their shares of the mean
-  bool turns = false;                         // nodes enough, on all ranks, for axes that turn with them
+  bool turns = false;                         // nodes off a line, on all ranks, for axes that turn with them
   Vec3 mean = Vec3::Zero();                   // of the nodes at the start
   Mat3 axes = Mat3::Identity();               // sensor axes at the start, columns
 };

@@ -96,6 +96,15 @@ TEST_F(ImportInpSteps, CentrifAboutAnotherAxisIsTold) {
   }
 }
 
+// Truth: CalculiX takes (w/2 pi)^2 off the squares of frequencies in the plane of rotation; ours stay, and a line says so.
+TEST_F(ImportInpSteps, SpinSofteningIsTold) {
+  imported_deck("a.inp",
+                bar + "*STEP, NLGEOM\n*STATIC\n*DLOAD\nbar, CENTRIF, 1., 0., 0., 0., 0., 0., 1.\n" + end +
+                    "*STEP, PERTURBATION\n*FREQUENCY\n2\n" + end,
+                "--scene-out s.toml");
+  EXPECT_NE(err.find("not read: spin softening of *DLOAD CENTRIF in *FREQUENCY"), std::string::npos) << err;
+}
+
 // Motions go on from step to step too: 1 and 3 um at the head, E A/L = 5e8 N/m.
 TEST_F(ImportInpSteps, AMovedSupportGoesOn) {
   solve(bar + statics + "*BOUNDARY\nhead, 1, 1, 1e-6\n" + end + statics + "*BOUNDARY\nhead, 1, 1, 3e-6\n" + end);

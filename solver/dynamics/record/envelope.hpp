@@ -31,6 +31,7 @@ class EnvelopeWriter final : public FieldWriter {
  public:
   EnvelopeWriter(RunOutput& file, Envelope& envelope, double t, const Slabs& nodes, const Slabs& cells);
   void piece(const std::string& name, const std::vector<double>& rows) override;
+  bool keeps() const override { return false; }
 
  private:
   Envelope& envelope_;

@@ -39,6 +39,16 @@ class FieldWriter {
   void cells(const std::string& name, const std::vector<double>& local, int width) {
     if (all_cells_) file_.write_piece(cells_, group + "/" + name, cells_.collect(local, width));
   }
+  /// Values at borders of regions, of items in rows of their own: /border/<step>/NAME.
+  void border(const Slabs& rows, const std::string& name, const std::vector<double>& local, int width) {
+    file_.write_piece(rows, "/border" + group.substr(group.rfind('/')) + "/" + name, rows.collect(local, width));
+  }
+  /// A list that is the same at all instants.
+  void list(const std::string& path, const std::vector<std::int64_t>& whole) {
+    file_.on_store([&](Store& f) { write_array(f, path, whole, {std::ssize(whole)}); });
+  }
+  /// Whether each instant is kept, with its borders.
+  virtual bool keeps() const { return true; }
   const Slabs& node_rows() const { return nodes_; }
   std::string group;  // /field/<step>
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 
 #include "model/region_surface.hpp"
@@ -145,6 +146,8 @@ void MeshPart::archive(Archive& a) {
 void MeshPart::shorten(Store& f) const {
   for (const std::string& step : f.list("/field"))
     if (step >= fmt::format("{:06}", times_.size())) f.remove("/field/" + step);
+  for (const std::string& step : f.list("/border"))
+    if (std::isdigit(step[0]) && step >= fmt::format("{:06}", times_.size())) f.remove("/border/" + step);
   f.remove("/VTKHDF");
   f.remove("/xdmf");
   f.remove("/envelope");

@@ -190,6 +190,7 @@ class Builder {
   const History& use_history(const Entry& entry, Acts acts);
   /// Nothing has inertia, nothing needs mass.
   bool is_static() const;
+  bool has_axes(const std::vector<std::pair<int, double>>& shares, const Vec3& centre) const;
   void add_stations();
   void add_mass(Body& body, const std::vector<std::pair<Vec3, double>>& points);
   void add_point_masses();

@@ -2,6 +2,7 @@
 // Entries of the scene to point masses and stations.
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -63,6 +64,15 @@ void Builder::add_point_masses() {
   }
 }
 
+/// Whether nodes are spread so that axes can turn with them: off a line by a hundredth of its length.  Collective.
+bool Builder::has_axes(const std::vector<std::pair<int, double>>& shares, const Vec3& centre) const {
+  Mat3 spread = Mat3::Zero();
+  for (const auto& [n, share] : shares) spread += share * (out_->X[n] - centre) * (out_->X[n] - centre).transpose();
+  comm_.sum(std::span<double>(spread.data(), 9));
+  const Vec3 along = Eigen::SelfAdjointEigenSolver<Mat3>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+  return along[1] > 1e-4 * along[2];
+}
+
 void Builder::add_stations() {
   for (const char* section : {"sensor", "probe"})
     for (const Entry& e : scene_.entries(section)) {
@@ -88,8 +98,12 @@ void Builder::add_stations() {
         s.mean = e.vector3("at");
       } else {
         s.nodes = shares_of(found);
-        s.turns = found.n_global > 2;
         s.mean = centre_of(s.nodes);
+        s.turns = has_axes(s.nodes, s.mean);
+        if (s.sensor && !s.turns)
+          warn(e.where("on"),
+               fmt::format("{}: the nodes of \"{}\" lie on a line, so its axes stay as drawn where the part turns (name a face)", e.label(),
+                           e.text("on")));
       }
       out_->part<Stations>().list.push_back(std::move(s));
     }

@@ -168,11 +168,13 @@ void Builder::add_loads() {
                                       {"torque", &LoadReading::torque},
                                       {"acceleration", &LoadReading::acceleration},
                                       {"centrifugal", &LoadReading::centrifugal}});
+  const std::string& analysis = scene_.table("time").text("analysis");
+  const bool in_proportion = analysis == "buckling" || analysis == "modes";  // of load steps: only what has no history
   for (const Entry& e : scene_.entries("load")) {
     Load load;
     load.name = e.name;
     load.history = use_history(e, Acts::as_force);
-    load.ramped = !e.given("history");
+    load.ramped = in_proportion || !e.given("history");
     if (e.kind == "line") {
       load.follower = e.boolean("follower");
       add_line_load(e, load);

@@ -49,6 +49,15 @@ TEST_F(Buckling, OfAColumnIsEulers) {
   EXPECT_NEAR(pulled[0] / f[0], -1, 1e-6) << "a pull buckles where it is reversed";
 }
 
+// Truth: Euler's load, a half of which has a history that is 1/2 at the end.
+TEST_F(Buckling, OfLoadsWithAHistory) {
+  const auto half = [](const std::string& name, double size, const std::string& more) {
+    return force(name, "arm.end", Vec3(0, 0, -size), more);
+  };
+  const auto f = factors(column() + half("a", 0.5, "") + half("b", 1, "history = {t = [0, 1], value = [0, 0.5]}"), 1);
+  EXPECT_NEAR(f[0] / (pi * pi * 25), 1, 3e-4);
+}
+
 // Under its own weight: 7.8373 EI/(q L^3) [timoshenko-gere-1961].
 TEST_F(Buckling, OfAHeavyColumnIsGreenhills) {
   const std::string weight = "[[load]]\nkind = \"line\"\nname = \"q\"\non = \"arm\"\nforce_per_length = [0, 0, -1]\n";

@@ -56,5 +56,19 @@ TEST(FreeFallSensor, FeelsNothing) {
   for (Eigen::Index i = 0; i < felt.rows(); ++i) ASSERT_LT((felt.row(i).transpose() - Vec3(0, 0, 1)).norm(), 1e-9) << "row " << i;
 }
 
+// Truth: axes cannot be told about a line; those of an edge stay as drawn, and a line says so.
+TEST(FreeFallSensor, OnAnEdgeHasAxesThatStay) {
+  SceneCase c(solid(2e9, 0.3, 1000, "block") + initial("block", "spin = [0, 10, 0]\nabout = [0, 0, 0]") +
+              "[set.edge]\nkind = \"box\"\nlow = [0.9, -9, -0.1]\nhigh = [9, 9, 0.1]\n[[sensor]]\nname = \"edge\"\non = \"edge\"\n"
+              "[[sensor]]\nname = \"face\"\non = \"xmax\"\n" +
+              probe("edge") + in_time(0.1, 2e-3));
+  c.use(block_mesh({}), {Fidelity::nonlinear});
+  const Ran ran = c.solve("--quiet");
+  EXPECT_NE(ran.err.find("sensor \"edge\": the nodes of \"edge\" lie on a line"), std::string::npos) << ran.err;
+  EXPECT_EQ(ran.err.find("sensor \"face\""), std::string::npos) << ran.err;
+  const Results r = c.results();
+  EXPECT_LT((r.history("sensor/edge") - r.history("probe/edge").rightCols(3) / g0).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 }  // namespace
 }  // namespace hilo::test::free_fall_test

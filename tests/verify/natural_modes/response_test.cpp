@@ -46,7 +46,7 @@ TEST_F(NaturalModes, GiveTheTransmissibilityOfAMassOnASpring) {
   const double m = 3, k = 1200, c = 20, w0 = std::sqrt(k / m), zeta = c / (2 * std::sqrt(k * m));
   modes(body("mass", m, {0, 0, 0}, {1, 1, 1}) + axial("prismatic", "guide", "ground", "mass", Vec3::Zero(), Vec3::UnitZ()) +
             bushing("s", "mass", Vec3::Zero(), {0, 0, 1200}, "damping = [0, 0, 20]") + probe("top", "mass", "at = [0, 0, 0]") +
-            force("push", "mass", {4, 0, 6}),
+            force("push", "mass", {4, 0, 2}) + force("swell", "mass", {0, 0, 8}, "history = {t = [0, 1], value = [0.5, 2]}"),
         3);
   const std::vector<Answer> pushed = answers(work.run("hilo-post response run.h5 --loads --at top.z --from 0.3 --to 30 --points 40"));
   EXPECT_EQ(pushed.size(), 40U);

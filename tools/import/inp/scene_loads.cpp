@@ -58,6 +58,7 @@ void InpScene::centrifugal() {
     }
     if (const auto ids = numbers_in(d_.elset, p); std::ranges::any_of(ids, [&](std::int64_t id) { return d_.beams.contains(id); }))
       in_.skip("*DLOAD CENTRIF on beams", p.place);
+    if (d_.plan.procedure == "*FREQUENCY") in_.skip("spin softening of *DLOAD CENTRIF in *FREQUENCY", p.place);
     tell_turns(p);
     load_of_mass(p, "centrifugal", "centrifugal", {{"at", point(p.at)}, {"axis", p.direction}, {"speed", std::sqrt(p.value) / si("s")}});
     load_of_points(p, [&](const Vec3& x) -> Vec3 {
