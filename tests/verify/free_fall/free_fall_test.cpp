@@ -63,7 +63,7 @@ TEST(FreeFallSensor, OnAnEdgeHasAxesThatStay) {
               "[[sensor]]\nname = \"face\"\non = \"xmax\"\n" +
               probe("edge") + in_time(0.1, 2e-3));
   c.use(block_mesh({}), {Fidelity::nonlinear});
-  const Ran ran = c.solve("--quiet");
+  const Ran ran = c.solve();
   EXPECT_NE(ran.err.find("sensor \"edge\": the nodes of \"edge\" lie on a line"), std::string::npos) << ran.err;
   EXPECT_EQ(ran.err.find("sensor \"face\""), std::string::npos) << ran.err;
   const Results r = c.results();
