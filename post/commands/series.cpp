@@ -177,7 +177,7 @@ Command series_command(CLI::App& app) {
                   "histories or columns by name or glob: energy, joint.trunnion, \"joint.*.Fx\", joint.trunnion.F and .M for resultants; "
                   "or a formula: \"pull [kN] = "
                   "hypot(joint.pin.Fx, joint.pin.Fy)/1e3\", of columns, t [s], pi, + - * / ^ and " +
-                      expression_functions() + " (d: rate, start: first value)");
+                      expression_functions() + " (d: rate, of second order; start: first value)");
   sub->add_option("--let", o->lets, "NAME = FORMULA: a name for the formulas after it, no column; --let once for each")
       ->allow_extra_args(false);
   sub->add_option("-x", o->x, "abscissa: a column or a formula, \"angle [deg] = 360*t\"; the time by default");

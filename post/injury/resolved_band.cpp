@@ -32,6 +32,12 @@ ResolvedBand resolved_band(const RunFile& run) {
 RawPeak raw_peak(const ResolvedBand& band, std::span<const double> t, std::span<const double> x, double h) {
   RawPeak p;
   if (t.size() < 3) return p;
+  if (!std::ranges::all_of(x, [](double v) { return std::isfinite(v); })) {  // rows without a value say nothing
+    std::vector<double> there, value;
+    for (size_t i = 0; i < x.size(); ++i)
+      if (std::isfinite(x[i])) there.push_back(t[i]), value.push_back(x[i]);
+    return raw_peak(band, there, value, h);
+  }
   size_t k = 0;
   for (size_t i = 1; i < x.size(); ++i)
     if (std::abs(x[i]) > std::abs(x[k])) k = i;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -41,10 +42,17 @@ Values fold(std::span<const Values> x, const Values&) {
 double least(double a, double b) { return std::isnan(a) || a < b ? a : b; }
 double greatest(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
-/// Central difference in time; none at the ends.
-Values rate(std::span<const Values> x, const Values& t) {
-  Values y(t.size(), none);
-  for (size_t i = 1; i + 1 < t.size(); ++i) y[i] = (x[0][i + 1] - x[0][i - 1]) / (t[i + 1] - t[i - 1]);
+/// Rate in time of second order, of steps of any length: that of the parabola through the three nearest values.
+Values rate(std::span<const Values> arguments, const Values& t) {
+  const Values& x = arguments[0];
+  const size_t n = t.size();
+  Values y(n, none);
+  const auto slope = [&](size_t i) { return (x[i] - x[i - 1]) / (t[i] - t[i - 1]); };
+  if (n == 2) y[0] = y[1] = slope(1);
+  for (size_t i = 0; n > 2 && i < n; ++i) {
+    const size_t k = std::clamp<size_t>(i + 1, 2, n - 1);  // last of the three
+    y[i] = slope(k - 1) + (slope(k) - slope(k - 1)) / (t[k] - t[k - 2]) * (2 * t[i] - t[k - 2] - t[k - 1]);
+  }
   return y;
 }
 Values start(std::span<const Values> x, const Values& t) { return Values(t.size(), x[0].empty() ? none : x[0][0]); }

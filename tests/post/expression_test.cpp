@@ -2,6 +2,8 @@
 // Formulas over histories, and tables set beside each other, through the command line and by themselves.
 #include "post/run/expression.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
@@ -48,12 +50,31 @@ TEST(Expression, NamesAreColumnsAndTimesAreT) {
   EXPECT_EQ(value("\"a.my-arm\"/10 - start(a.x)"), (std::vector<double>{0, 1, 2, 3}));
 }
 
-TEST(Expression, TheRateOfALineIsItsSlopeAndHasNoEnds) {
-  const auto rate = value("d(3*t - 1)");
-  EXPECT_TRUE(std::isnan(rate.front()) && std::isnan(rate.back()));
-  EXPECT_TRUE(std::isnan(value("max(d(t), 0)").front()) && std::isnan(value("min(0, d(t))").front())) << "no end is not zero";
-  EXPECT_DOUBLE_EQ(rate[1], 3);
-  EXPECT_DOUBLE_EQ(rate[2], 3);
+// Truth: rates of polynomials up to the second degree are exact, whatever the steps are, at the ends too.
+TEST(Expression, TheRateOfAParabolaIsExactOnUnevenStepsAndAtTheEnds) {
+  const auto rate = value("d(3*t^2 - t + 1)");
+  for (size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(rate[i], 6 * times[i] - 1, 1e-13) << times[i];
+  EXPECT_TRUE(std::isnan(value("max(sqrt(1 - t), 0)").back()) && std::isnan(value("min(0, sqrt(1 - t))").back())) << "none is not zero";
+}
+
+/// Largest error of a formula of t on n steps of which each third is three times as long, for t up to 1.
+double farthest(const std::string& formula, int n, double (*truth)(double)) {
+  std::vector<double> t{0};
+  for (int i = 0; i < n; ++i) t.push_back(t.back() + (i % 3 < 2 ? 1 : 3) * 0.6 / n);
+  double worst = 0;
+  const auto y = evaluate(formula, t, [](const std::string& name) -> std::vector<double> { throw Error("", name); });
+  for (size_t i = 0; i < t.size(); ++i) worst = std::max(worst, std::abs(y[i] - truth(t[i])));
+  return worst;
+}
+
+// Truth: sin' = cos and sin'' = -sin.  The rate is of second order, that of a rate of first where the steps change.
+TEST(Expression, RatesConvergeOnUnevenSteps) {
+  const auto rate = [](double t) { return std::cos(t); };
+  const auto second = [](double t) { return -std::sin(t); };
+  EXPECT_LT(farthest("d(sin(t))", 300, rate), 2e-5);
+  EXPECT_NEAR(farthest("d(sin(t))", 300, rate) / farthest("d(sin(t))", 600, rate), 4, 0.1);
+  EXPECT_LT(farthest("d(d(sin(t)))", 600, second), 5e-3);
+  EXPECT_NEAR(farthest("d(d(sin(t)))", 300, second) / farthest("d(d(sin(t)))", 600, second), 2, 0.1);
 }
 
 TEST(Expression, WhatIsNoFormulaIsToldWithItsColumn) {
@@ -94,6 +115,15 @@ TEST(SeriesFormula, ColumnsAreTheFormulaOfWhatIsStoredOverTheAbscissaAskedFor) {
   for (size_t i = 0; i < table.rows(); ++i) {
     EXPECT_DOUBLE_EQ(angle[i], 360 * t[i + 40]);
     EXPECT_DOUBLE_EQ(pull[i], std::hypot(joint[6 * (i + 40)], joint[6 * (i + 40) + 1]) / 1e3);
+  }
+}
+
+// Truth: a ramp of 1 N/s and the root of a time that is negative at first hold nothing above what steps of 0.5 ms resolve.
+TEST(SeriesFormula, RowsWithoutAValueGiveNoWarning) {
+  for (const char* formula : {"a [N] = d(t^2/2)", "a [N] = sqrt(t - 0.05)"}) {
+    const Ran ran = post(fmt::format("series run.h5 '{}' -o none.csv", formula));
+    EXPECT_EQ(ran.exit, 0);
+    EXPECT_EQ(ran.err, "") << formula;
   }
 }
 

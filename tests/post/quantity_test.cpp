@@ -43,19 +43,21 @@ TEST(Quantity, meets_closed_forms_and_run_json_has_it) {
                   quantity("then", "kind = \"at\"\nt = 0.025\njoint = \"root\"") + quantity("mean", "kind = \"rms\"\njoint = \"root\"") +
                   quantity("apart", "kind = \"peak\"\nbetween = [\"here\", \"there\"]\ntolerance = \"1 mm\"") +
                   quantity("half", "kind = \"peak\"\nformula = \"half [kN] = joint.root.Fz/2e3\"\ntolerance = \"1 N\"") +
+                  quantity("speed", "kind = \"peak\"\nformula = \"speed [m/s] = d(probe.there.x)\"") +
                   quantity("felt", "kind = \"peak\"\nsensor = \"seat\"\ncfc = 60") + quantity("pitch", "kind = \"frequency\"\nmode = 1"));
   const Ran solved = succeeded(place.run("hilo-solve scene.toml -o run.h5"));
   EXPECT_NE(solved.out.find("joint root: force"), std::string::npos) << solved.out;  // every run prints them
   EXPECT_NE(solved.err.find("quantity \"pitch\": the run is no analysis of modes"), std::string::npos) << solved.err;
   const Ran ran = succeeded(place.run("hilo-post quantity run.h5 --json"));
   auto v = values(ran.out);
-  ASSERT_EQ(v.size(), 8u) << ran.out;
+  ASSERT_EQ(v.size(), 9u) << ran.out;
   EXPECT_NEAR(v["peak"], 100, 0.51);  // of the mean over a step of 1/100 of the ramp
   EXPECT_NEAR(std::abs(v["up"]), 100, 0.51);
   EXPECT_NEAR(v["then"], 50, 0.51);
   EXPECT_NEAR(v["mean"], 100 / std::sqrt(3), 0.01 * 57.7);
   EXPECT_NEAR(v["apart"], 0.1, 1e-9);  // away along the line between them, 1 m/s
   EXPECT_NEAR(std::abs(v["half"]), 0.05, 0.0003);
+  EXPECT_NEAR(v["speed"], 0.6, 1e-9) << "a rate has values at the ends too";
   EXPECT_NEAR(v["felt"], 0, 1e-6);
   EXPECT_TRUE(std::isnan(v["pitch"]));
   EXPECT_NE(ran.out.find("\"allowed\": 500"), std::string::npos) << ran.out;
