@@ -134,9 +134,10 @@ Shown shown(const std::string& name, const std::vector<std::string>& known) {
 void run(const AtOptions& o) {
   if ((o.node >= 0) + !o.point.empty() + !o.line.empty() != 1)
     throw Error("at", "where?", "give one of --node N, --point x,y,z and --line x,y,z x,y,z", Exit::usage);
-  RunFile run(o.run);
+  RunFile run = judged_run(o.run);
   const MeshFile& file = run.mesh_file();
   const auto steps = run.select_steps(is_envelope(o.field) ? "last" : o.steps, is_envelope(o.field) ? "" : o.times);
+  if (!is_envelope(o.field)) warn_of_unseen_end(run, steps);
   const Shown shown = hilo::shown(o.field, run.fields(steps.front()));
   std::vector<bool> wanted = shown_regions(file.mesh, o.show, o.hide);
   for (size_t r = 0; r < wanted.size(); ++r)

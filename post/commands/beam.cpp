@@ -162,7 +162,7 @@ void write_png(const BeamOptions& o, const RunFile& run, const std::vector<doubl
 }
 
 void run(const BeamOptions& o) {
-  const RunFile run(o.run);
+  const RunFile run = judged_run(o.run);
   if (o.sections) {
     BeamOptions all = o;
     if (o.names.empty()) all.names = {"*"};

@@ -47,7 +47,7 @@ std::pair<std::string, double> read_shape(const std::string& word) {
 }
 
 void run(const BendOptions& o) {
-  RunFile file(o.run);
+  RunFile file = judged_run(o.run);
   const size_t n_nodes = file.mesh().X.size();
   if (file.is_skin()) throw Error(o.run, "has the displacements of the skin alone", "run it with output.nodes = \"all\", the default");
   check_output(o.output);

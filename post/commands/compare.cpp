@@ -41,7 +41,7 @@ struct Curves {
 std::string title_of(const Column& c) { return fmt::format("{} [{}]", c.label, c.unit); }
 
 Curves of_run(const CompareOptions& o, const std::string& path) {
-  const RunFile run(path);
+  const RunFile run = judged_run(path);
   RunColumns columns(run, {});
   if (run.series_names().empty()) throw Error(path, "holds no history");
   const auto picked = columns.pick(o.y.empty() ? std::vector<std::string>{"*"} : o.y);

@@ -87,7 +87,7 @@ void export_gltf(const ExportOptions& o, RunFile& file, std::vector<Step> steps)
 }
 
 void run(const ExportOptions& o) {
-  RunFile file(o.run);
+  RunFile file = judged_run(o.run);
   if (o.output.ends_with(".gltf"))
     throw Error(o.output, "glTF is written in its binary form", "give the file the ending .glb", Exit::usage);
   const bool gltf = o.output.ends_with(".glb");
@@ -101,6 +101,7 @@ void run(const ExportOptions& o) {
   if (!file.has_mesh() && (gltf || !file.beams().empty())) file.stand_in_bodies();
   file.draw_beams();
   const auto steps = file.select_steps(o.steps, o.times);
+  warn_of_unseen_end(file, steps);
   if (gltf) return export_gltf(o, file, steps);
   if (steps.size() != 1) throw Error("--steps", "one step makes one VTU file", "", Exit::usage);
   const Step& step = steps.front();

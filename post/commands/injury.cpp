@@ -87,8 +87,7 @@ void run(const InjuryOptions& o) {
                "Proper acceleration in the sensors' axes (x forward, y left, z up), minus the value at the start (1 g upward at rest);\n"
                "HIC, SI (CFC 1000 or the highest class the record holds) and clip_3ms (cumulative) use the whole resultant.  Reference "
                "levels do not\n"
-               "replace their sources; Brinkley's limits were not checked against theirs (a second source agrees on +z).{}\n",
-               file.complete ? "" : "  The run is not complete.");
+               "replace their sources; Brinkley's limits were not checked against theirs (a second source agrees on +z).\n");
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ struct PeakOptions {
 };
 
 void run(const PeakOptions& o) {
-  RunFile run(o.run);
+  RunFile run = judged_run(o.run);
   const bool of_beams = !run.beams().empty() && (o.field == "von_mises" || o.field == "axial_stress");
   if (of_beams && !run.has_mesh()) run.stand_in_bodies();
   const size_t n_own = of_beams || run.has_mesh() ? run.mesh_file().mesh.region_name.size() : 0;  // before the beams
@@ -33,7 +33,9 @@ void run(const PeakOptions& o) {
   const Mesh& mesh = file.mesh;
   const auto steps = run.select_steps(o.steps, o.times);
   if (is_named_field(o.field)) throw Error("--field", fmt::format("{} is a name, not a number", o.field), "", Exit::usage);
-  const ShownField field = shown_field(o.field, run.fields(steps.front()));
+  const bool of_cells = o.field.starts_with("cell_");
+  ShownField field = shown_field(o.field.substr(of_cells ? 5 : 0), run.fields(steps.front()));
+  if (of_cells) field.array = o.field;
   std::vector<bool> shown = shown_regions(mesh, o.show, o.hide);
   const bool own = !of_beams || run.store().has("/field/" + steps.front().key + "/" + field.array);  // of the mesh too
   for (size_t r = 0; r < shown.size(); ++r)
@@ -41,9 +43,11 @@ void run(const PeakOptions& o) {
   // over all steps of the run, where it has that and nothing less was asked for
   const std::string envelope = o.field + "_envelope";
   const bool of_all = o.steps == "all" && o.times.empty() && run.has_field(steps.back(), envelope);
+  if (!of_all || of_beams) warn_of_unseen_end(run, steps);
   const auto of_steps = [&](const std::vector<bool>& regions) {
-    return field_peaks(run, steps, regions,
-                       [&](const Step& step, int r) { return reduced(run.field_in(r, step, field.array), field, run.path); });
+    return field_peaks(
+        run, steps, regions, [&](const Step& step, int r) { return reduced(run.field_in(r, step, field.array), field, run.path); },
+        of_cells);
   };
   const auto largest_of_all = [&](const Step& step, int r) {
     auto value = run.field(step, envelope).value;
@@ -55,7 +59,7 @@ void run(const PeakOptions& o) {
   if (of_all) {
     const auto t = run.field(steps.back(), envelope + "_time").value;
     for (FieldPeak& p : peaks)
-      if (p.node >= 0) p.t = t.at(static_cast<size_t>(p.node));
+      if (p.place >= 0) p.t = t.at(static_cast<size_t>(p.place));
     std::vector<bool> others = shown;  // that no envelope has: beams, and nodes of which it has the stress of another region
     for (size_t r = 0; r < n_own; ++r) others[r] = shown[r] && o.field == "von_mises" && !run.own_nodes(static_cast<int>(r)).empty();
     const auto theirs = of_steps(others);
@@ -65,12 +69,15 @@ void run(const PeakOptions& o) {
   double largest = 0;
   for (const FieldPeak& p : peaks) largest = std::max(largest, std::abs(p.value));
   const ShownUnit unit = o.unit.empty() ? handy_unit(field.unit, largest) : wanted_unit(field.unit, o.unit);
-  Table table{{"region", fmt::format("{} [{}]", o.field, unit.name), "t [s]", "node", "X [m]", "Y [m]", "Z [m]"}, {}, 1};
+  Table table{
+      {"region", fmt::format("{} [{}]", o.field, unit.name), "t [s]", of_cells ? "cell" : "node", "X [m]", "Y [m]", "Z [m]"}, {}, 1};
   for (size_t r = 0; r < shown.size(); ++r) {
-    if (peaks[r].node < 0) continue;
-    const Vec3& X = mesh.X[static_cast<size_t>(peaks[r].node)];
+    if (peaks[r].place < 0) continue;
+    Vec3 X = Vec3::Zero();
+    const auto nodes = of_cells ? mesh.cell(peaks[r].place) : std::span<const std::int64_t>(&peaks[r].place, 1);
+    for (const std::int64_t n : nodes) X += mesh.X[static_cast<size_t>(n)] / static_cast<double>(nodes.size());
     table.rows.push_back({mesh.region_name[r], fmt::format("{:.6g}", peaks[r].value * unit.factor), fmt::format("{:.6g}", peaks[r].t),
-                          of_beams && r >= n_own ? "-" : fmt::format("{}", peaks[r].node), fmt::format("{:.5g}", X[0]),
+                          of_beams && r >= n_own ? "-" : fmt::format("{}", peaks[r].place), fmt::format("{:.5g}", X[0]),
                           fmt::format("{:.5g}", X[1]), fmt::format("{:.5g}", X[2])});
   }
   if (table.rows.empty())
@@ -89,7 +96,7 @@ Command peak_command(CLI::App& app) {
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("--field", o->field,
                   "von_mises, axial_stress (of beams), stress_error, plastic_strain, contact_pressure, acceleration, displacement, "
-                  "velocity (or .x .y .z of these), "
+                  "velocity (or .x .y .z of these), cell_von_mises, cell_plastic_strain, "
                   "stress.xx, "
                   "shell_moment.m11")
       ->capture_default_str();

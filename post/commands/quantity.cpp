@@ -2,6 +2,7 @@
 // hilo-post quantity: the quantities that the scene of a run asks for.
 #include "post/quantity/quantity.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include "base/args.hpp"
@@ -18,7 +19,7 @@ struct QuantityOptions {
 };
 
 void run(const QuantityOptions& o) {
-  RunFile file(o.run);
+  RunFile file = judged_run(o.run);
   const Scene scene = o.scene.empty() ? scene_of(file) : Scene::load(o.scene);
   const auto all = quantities(scene, file);
   if (all.empty()) throw Error(scene.path, "the scene asks for no quantity", "write [[quantity]], and give it with --scene");
@@ -37,6 +38,8 @@ void run(const QuantityOptions& o) {
   }
   for (const QuantityValue& v : shown)
     if (!v.why.empty()) warn("", v.why);
+  if (std::ranges::any_of(shown, [](const QuantityValue& v) { return v.measured == Measured::stress && v.why.empty(); }))
+    warn_of_unseen_end(file, file.steps);
   const Table table = quantity_table(shown);
   write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }

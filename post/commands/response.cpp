@@ -153,7 +153,7 @@ Base::Base(const RunFile& run, const std::vector<std::string>& bases, const Mode
 }
 
 void run(const ResponseOptions& o) {
-  const RunFile file(o.run);
+  const RunFile file = judged_run(o.run);
   if (file.buckles || file.shapes.size() < 2) throw Error(o.run, "holds no modes", "run the scene with time.analysis = \"modes\"");
   const Modes modes = modes_of(file, o.damping);
   const double highest = std::sqrt(std::max(0.0, *std::max_element(modes.omega2.begin(), modes.omega2.end()))) / (2 * std::numbers::pi);

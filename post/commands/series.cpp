@@ -155,7 +155,7 @@ void warn_of_band(const RunFile& run, const std::vector<Column>& columns) {
 }
 
 void run(const SeriesOptions& o) {
-  const RunFile file(o.run);
+  const RunFile file = judged_run(o.run);
   if (o.list) return list(o, file);
   if (o.names.empty())
     throw Error("series", "which histories?", "give names or globs, such as energy or \"joint.*\", or --list", Exit::usage);

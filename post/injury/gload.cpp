@@ -37,14 +37,14 @@ void filter(SensorRecord& s, double cfc) {
 
 Sensors from_csv(const std::string& path, const std::vector<std::string>& globs) {
   const CsvTable table = read_csv(path);
-  Sensors out{path, std::filesystem::path(path).stem().string(), true, {}};
+  Sensors out{path, std::filesystem::path(path).stem().string(), {}};
   const std::vector<double> t = table.numbers_in("s", 0, "s", "s or ms");
   for (size_t i = 1; i < t.size(); ++i)
     if (!(t[i] > t[i - 1])) throw Error(path, fmt::format("time does not rise in row {}", i + 1), "the first column is the time");
   std::vector<std::string> all;
   std::map<std::string, std::array<std::vector<double>, 4>> found;
   for (size_t c = 1; c < table.header.size(); ++c) {
-    const std::string name = table.header[c].substr(0, table.header[c].find_first_of("[("));
+    const std::string name = table.header[c].substr(0, table.header[c].find_last_of("[("));
     const std::string plain = name.substr(0, name.find_last_not_of(' ') + 1);
     const size_t dot = plain.rfind('.');
     const std::string axis = dot == plain.npos ? plain : plain.substr(dot + 1);
@@ -78,8 +78,8 @@ Sensors read_sensors(const std::string& path, const std::vector<std::string>& gl
   if (path.ends_with(".csv")) {
     out = from_csv(path, globs);
   } else {
-    const RunFile run(path);
-    out = {run.path, run.title, run.complete, {}};
+    const RunFile run = judged_run(path);
+    out = {run.path, run.title, {}};
     band = resolved_band(run);
     for (const std::string& name : sensor_names(run, globs)) {
       const Series series = run.series("sensor." + name);

@@ -23,7 +23,6 @@ struct SensorRecord {
 /// an axis without a column felt nothing.  Error where a column has another name or unit.
 struct Sensors {
   std::string path, title;
-  bool complete = true;
   std::vector<SensorRecord> records;
 };
 Sensors read_sensors(const std::string& path, const std::vector<std::string>& globs, double cfc);

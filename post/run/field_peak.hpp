@@ -9,11 +9,11 @@ namespace hilo {
 
 struct FieldPeak {
   double value = 0, t = 0;  // [unit of the file], [s]
-  std::int64_t node = -1;   // -1: none
+  std::int64_t place = -1;  // node or cell; -1: none
 };
 /// One for each region of the mesh; those that are not `wanted` have none.  `values` gives a number for each node at a step, as a region
-/// has it (-1: as nodes have it).
+/// has it (-1: as nodes have it), or for each cell.
 std::vector<FieldPeak> field_peaks(RunFile& run, const std::vector<Step>& steps, const std::vector<bool>& wanted,
-                                   const std::function<std::vector<double>(const Step&, int region)>& values);
+                                   const std::function<std::vector<double>(const Step&, int region)>& values, bool of_cells = false);
 
 }  // namespace hilo

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "base/error.hpp"
 #include "model/mesh_source.hpp"
@@ -130,6 +131,34 @@ void RunFile::read_skin() {
     }
     for (const auto& [n, from] : reached) row_[static_cast<size_t>(n)] = from, more = true;
   }
+}
+
+namespace {
+
+/// Time of the last row; none: there is no row.
+std::optional<double> last_row(const RunFile& run) {
+  if (!run.store().has("/history/t")) return {};
+  const auto t = run.store().read<double>("/history/t");
+  return t.empty() ? std::nullopt : std::optional(t.back());
+}
+
+}  // namespace
+
+RunFile judged_run(const std::string& path) {
+  RunFile run(path);
+  if (run.complete) return run;
+  const auto end = last_row(run);
+  warn(path, "the run is not complete: in progress or stopped" + (end ? fmt::format(", it has come to t = {:.6g} s", *end) : ""));
+  return run;
+}
+
+void warn_of_unseen_end(const RunFile& run, const std::vector<Step>& outputs) {
+  const auto end = last_row(run);
+  if (!run.complete || !end || outputs.empty() || outputs.back().key != run.steps.back().key) return;
+  const double t = run.steps.back().t;
+  if (t < *end - 1e-9 * std::abs(*end))
+    warn(run.path,
+         fmt::format("its last fields are those of t = {:.6g} s, it ends at {:.6g} s: output.interval does not divide it", t, *end));
 }
 
 void RunFile::close() { store_.reset(); }

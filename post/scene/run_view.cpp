@@ -30,7 +30,7 @@ void same_mesh(const Mesh& a, const Mesh& b, const std::string& path_a, const st
 }
 
 RunFile opened(const std::string& path) {
-  RunFile run(path);
+  RunFile run = judged_run(path);
   run.stand_in_bodies();
   run.draw_beams();
   return run;
