@@ -36,8 +36,6 @@ std::vector<std::pair<std::string, std::vector<size_t>>> groups(const CsvTable& 
   return found;
 }
 
-std::string plain(const std::string& header) { return header.substr(0, header.find(" [")); }
-
 std::string join(const std::string& a, const std::string& b) { return a.empty() || b.empty() ? a + b : a + ", " + b; }
 
 void run(const ChartOptions& o) {
@@ -92,7 +90,7 @@ void run(const ChartOptions& o) {
       for (const auto& [name, rows] : groups(table, o.by)) {
         ChartCurve curve;
         curve.label = join(o.files.size() > 1 ? std::filesystem::path(file).stem().string() : "", name);
-        if (columns.size() > 1 || curve.label.empty()) curve.label = join(curve.label, plain(table.header[c]));
+        if (columns.size() > 1 || curve.label.empty()) curve.label = join(curve.label, without_unit(table.header[c]));
         for (const size_t row : rows) curve.x.push_back(xs[row]), curve.y.push_back(ys[row]);
         const int n = n_curves++;
         curve.marker = o.markers || o.points ? n : -1;

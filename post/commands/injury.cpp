@@ -61,7 +61,7 @@ Table table_of(const std::vector<Crew>& crew, bool units) {
 std::string csv_of(const Table& table) {
   std::string out;
   const auto line = [&](const std::vector<std::string>& cells) {
-    for (size_t j = 0; j < cells.size(); ++j) out += (j ? "," : "") + (cells[j] == "-" ? std::string() : cells[j]);
+    for (size_t j = 0; j < cells.size(); ++j) out += (j ? "," : "") + (cells[j] == "-" ? std::string() : csv_cell(cells[j]));
     out += '\n';
   };
   line(table.header);

@@ -29,7 +29,7 @@ std::vector<std::string> cells_of(const std::string& line) {
     const char c = line[i];
     if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
       cells.back() += line[++i];
-    else if (c == '"')
+    else if (c == '"' && (quoted || trimmed(cells.back()).empty()))
       quoted = !quoted;
     else if (c == ',' && !quoted)
       cells.emplace_back();
@@ -40,9 +40,21 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-std::string without_unit(const std::string& name) { return trimmed(name.substr(0, name.find('['))); }
-
 }  // namespace
+
+std::string without_unit(const std::string& heading) {
+  const std::string text = trimmed(heading);
+  if (text.ends_with(']')) return trimmed(text.substr(0, text.rfind('[')));
+  if (text.ends_with(')') && named_unit(unit_in_heading(text))) return trimmed(text.substr(0, text.rfind('(')));
+  return text;
+}
+
+std::string csv_cell(const std::string& name) {
+  if (name.find_first_of(",\"\n") == name.npos && trimmed(name) == name && !name.starts_with('#')) return name;
+  std::string cell = "\"";
+  for (const char c : name) cell += c == '"' ? "\"\"" : std::string(1, c);
+  return cell + '"';
+}
 
 CsvTable read_csv(const std::string& path) {
   CsvTable table;
@@ -123,7 +135,7 @@ double unit_factor(const Heading& from, const Heading& to) {
 
 std::string csv_text(const std::vector<std::string>& header, const std::vector<std::vector<double>>& columns) {
   std::string text;
-  for (size_t c = 0; c < header.size(); ++c) text += (c ? "," : "") + header[c];
+  for (size_t c = 0; c < header.size(); ++c) text += (c ? "," : "") + csv_cell(header[c]);
   text += '\n';
   for (size_t row = 0; !columns.empty() && row < columns.front().size(); ++row) {
     for (size_t c = 0; c < columns.size(); ++c) {

@@ -31,6 +31,11 @@ struct Heading {
 /// in more than a factor.
 double unit_factor(const Heading& from, const Heading& to);
 
+/// "x_low" of "x_low [g]", "x_low[g]" and "x_low (g)".
+std::string without_unit(const std::string& heading);
+
+/// A name as a cell: in quotes where commas, quotes, a # or blanks at its ends ask for them (RFC 4180).
+std::string csv_cell(const std::string& name);
 /// CSV of columns of numbers, written so that they read back as the same doubles.
 std::string csv_text(const std::vector<std::string>& header, const std::vector<std::vector<double>>& columns);
 

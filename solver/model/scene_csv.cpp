@@ -23,19 +23,25 @@ std::string_view trim_cell(std::string_view s) {
   return first == s.npos ? "" : s.substr(first, last - first + 1);
 }
 
+bool is_separator(char c) { return c == ',' || c == ';' || c == '\t'; }
+
 struct Field {
   std::string_view text;
   int column;
 };
 
-/// Fields between commas, semicolons or tabs.
+/// Fields between commas, semicolons or tabs; these may stand in a field in double quotes.
 std::vector<Field> fields_of(std::string_view line) {
   std::vector<Field> fields;
   for (size_t begin = 0; begin <= line.size();) {
-    const size_t end = std::min(line.find_first_of(",;\t", begin), line.size());
+    size_t end = begin;
+    for (bool quoted = false; end < line.size() && (quoted || !is_separator(line[end])); ++end)
+      if (line[end] == '"' && (quoted || trim_cell(line.substr(begin, end - begin)).empty() || line[end - 1] == '"')) quoted = !quoted;
     const std::string_view raw = line.substr(begin, end - begin);
     const size_t blank = std::min(raw.find_first_not_of(" \r"), raw.size());
-    fields.push_back({trim_cell(raw), static_cast<int>(begin + blank + 1)});
+    std::string_view text = trim_cell(raw);
+    if (text.size() > 1 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
+    fields.push_back({text, static_cast<int>(begin + blank + 1)});
     begin = end + 1;
   }
   return fields;

@@ -106,6 +106,8 @@ TEST_F(SceneText, UnitsInTheHeaderOfALoadAreConvertedAndATableThatEndsEarlyIsTol
   EXPECT_DOUBLE_EQ(history(of("t,f\n0,0\n500,2\n", "", "units = \"mm-kg-ms\"\n")).t.back(), 0.5) << "the time of the system";
   EXPECT_DOUBLE_EQ(history(of("t [s],f [kN]\n0,0\n.5,2\n", "", "units = \"mm-kg-ms\"\n")).t.back(), 0.5) << "kg mm/ms^2 is kN";
   EXPECT_DOUBLE_EQ(history(of("t [s];f [kN]\n0;0\n.5;2\n", "scale = 1000\n")).value.back(), 2000);
+  EXPECT_DOUBLE_EQ(history(of("t [ms],\"sensor.seat, \"\"left\"\".x [N]\"\n0,\"0\"\n500,2\n", "")).t.back(), 0.5)
+      << "quotes as series writes them";
   const auto ends = [&](const std::string& csv) {
     const Scene s = of(csv, "");
     return std::count_if(s.warnings.begin(), s.warnings.end(), [](const std::string& w) { return w.find("the table ends at") != w.npos; });

@@ -69,6 +69,23 @@ TEST(Csv, numbers_read_back_as_they_were) {
   EXPECT_EQ(read_csv(place / "a.csv").numbers(0), x);
 }
 
+// Truth: RFC 4180, and that what is written reads back.
+TEST(Csv, names_with_commas_and_quotes_are_written_in_quotes) {
+  const Workplace place;
+  const std::vector<std::string> names{"t [s]", "seat, left.x [g]", "5\" gun", "#1", " a"};
+  const std::string text = csv_text(names, {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {8, 9}});
+  EXPECT_EQ(text.substr(0, text.find('\n')), "t [s],\"seat, left.x [g]\",\"5\"\" gun\",\"#1\",\" a\"");
+  place.write("a.csv", text);
+  const CsvTable table = read_csv(place / "a.csv");
+  ASSERT_EQ(table.header.size(), names.size());
+  for (size_t c = 0; c + 1 < names.size(); ++c) EXPECT_EQ(table.header[c], names[c]);
+  EXPECT_EQ(table.numbers(4), (std::vector<double>{8, 9}));
+  place.write("b.csv", "5\" gun,b [m],c[m],d (m),e (old)\n1,2,3,4,5\n");
+  const CsvTable b = read_csv(place / "b.csv");
+  EXPECT_EQ(b.header[0], "5\" gun") << "a quote within a cell is a sign like others";
+  for (const auto& [name, column] : {std::pair{"b", 1}, {"c", 2}, {"d", 3}, {"e (old)", 4}}) EXPECT_EQ(b.find(name), column) << name;
+}
+
 TEST(Chart, has_the_curve_where_its_numbers_are) {
   const Workplace place;
   std::string text = "x,y\n";

@@ -83,7 +83,40 @@ TEST(InjuryReport, tells_how_far_a_pulse_leaves_its_corridor) {
   succeeded(place.run("hilo-post --quiet injury run.h5 --cfc 1000 --corridor other.csv -o other_out.csv"));
   EXPECT_EQ(text_of(place / "other_out.csv"), text_of(place / "out.csv"));
   place.write("empty.csv", "t,a\n0,1\n1,2\n");
-  EXPECT_EQ(place.run("hilo-post injury run.h5 --corridor empty.csv").exit, 2);
+  expect_end(place.run("hilo-post injury run.h5 --corridor empty.csv"), 2,
+             "empty.csv: column \"a\" is none of a corridor (it has t, x_low, x_high, y_low, y_high, z_low, z_high)");
+}
+
+// Truth: the half sine of 100 g has its peak at 20 ms; before 10 ms and after 30 ms it is nothing.
+TEST(InjuryReport, tells_where_a_corridor_is_not) {
+  const auto& place = sample_place();
+  const auto outside = [&](const std::string& corridor, const std::string& key, const std::string& warning) {
+    place.write("part.csv", corridor);
+    const Ran ran = succeeded(place.run("hilo-post injury run.h5 --cfc 1000 --corridor part.csv -o part_out.csv"));
+    EXPECT_EQ(ran.err.find("part.csv: ") != ran.err.npos, !warning.empty()) << ran.err;
+    EXPECT_NE(ran.err.find(warning), ran.err.npos) << ran.err;
+    const CsvTable table = read_csv(place / "part_out.csv");
+    return table.numbers(table.find(key)).front();
+  };
+  EXPECT_NEAR(outside("t [s],x_low[g],x_high[g],z_low [g],z_high [g]\n0,-1,1,-1,1\n0.1,-1,1,-1,1\n", "outside_x", ""), 99, 0.5)
+      << "no blank";
+  const std::string told = "lies outside the corridor's 0.04 to 0.1 s: 40 % of the record is not compared";
+  EXPECT_NEAR(outside("t,x_low,x_high\n0.04,-1,1\n0.1,-1,1\n", "outside_x", told), 0, 1e-9);
+  EXPECT_TRUE(std::isnan(outside("t,x_low,x_high\n1,-1,1\n2,-1,1\n", "outside_x", "1 to 2 s: 100 % of the record is not compared")));
+  EXPECT_NEAR(outside("t,x_low,x_high\n0.01,-1,101\n0.03,-1,101\n", "outside_x", ""), 0, 1e-9) << "the peak lies within";
+}
+
+// A comma in a name: what is written reads back, and no column moves.
+TEST(InjuryReport, names_with_commas_stay_in_their_cells) {
+  const auto& place = sample_place();
+  std::string record = "t [s],\"seat, left.x [g]\",seat (right).x [g]\n";
+  for (int i = 0; i <= 100; ++i) record += fmt::format("{},{},0\n", 1e-3 * i, i > 20 && i < 40 ? 10 : 0);
+  place.write("comma.csv", record);
+  succeeded(place.run("hilo-post --quiet injury comma.csv -o comma_injury.csv && hilo-post --quiet gload comma.csv -o comma_gload.csv"));
+  const CsvTable injury = read_csv(place / "comma_injury.csv"), gload = read_csv(place / "comma_gload.csv");
+  EXPECT_EQ(injury.column[0], (std::vector<std::string>{"seat, left", "seat (right)"}));
+  EXPECT_EQ(gload.header[1], "seat, left.raw_x [g]");
+  EXPECT_EQ(gload.numbers(1)[30], 10);
 }
 
 TEST(InjuryReport, page_has_the_ratio_of_A4_and_white_margins) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "post/files/csv.hpp"
+
 namespace hilo {
 namespace {
 
@@ -157,8 +159,8 @@ std::string models_csv(const Candidates& all, const Advice& a) {
   for (const Candidate* c : a.tried) {
     const double d = difference(*c, *a.reference);
     if (c != a.reference && std::isfinite(d))
-      rows[c->cost] =
-          fmt::format("{:.4g},{:.4g},{},\"{}\"\n", c->cost, d, c == a.chosen ? "chosen" : "other models", label(c->levels, all.names()));
+      rows[c->cost] = fmt::format("{:.4g},{:.4g},{},{}\n", c->cost, d, c == a.chosen ? "chosen" : "other models",
+                                  csv_cell(label(c->levels, all.names())));
   }
   std::string out = "processor time [s],error over allowed,choice,model\n";
   for (const auto& [cost, row] : rows) out += row;
@@ -168,7 +170,7 @@ std::string models_csv(const Candidates& all, const Advice& a) {
 std::string regions_csv(const Candidates& all, const Advice& a) {
   std::string out = "region,if rigid: error/allowed\n";
   for (const auto& [r, c] : a.without)
-    if (const double d = difference(*c, *a.reference); std::isfinite(d)) out += fmt::format("\"{}\",{:.4g}\n", all.names()[r], d);
+    if (const double d = difference(*c, *a.reference); std::isfinite(d)) out += fmt::format("{},{:.4g}\n", csv_cell(all.names()[r]), d);
   return out;
 }
 
