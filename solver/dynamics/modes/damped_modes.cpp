@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "linear/eigen_pairs.hpp"
+#include "dynamics/modes/quadratic_span.hpp"
 
 namespace hilo {
 namespace {
@@ -17,164 +17,150 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Complex = std::complex<double>;
 
-/// Vectors orthonormal in M, with what K, M and C make of them; K up to forces of joints, which do no work on any of them.
-struct Span {
-  Matrix V, MV, KV, CV;
-  /// What of w is beside the span joins it; (K + shift M) w = f.
-  void extend(const Linearized& at, double shift, Vector w, const Vector& f) {
-    Vector Mw = at.mass(w);
-    const double before = w.dot(Mw);
-    Vector Kw = f - shift * Mw;
-    for (int twice = 0; twice < 2; ++twice) {
-      const Vector share = MV.transpose() * w;
-      w -= V * share, Mw -= MV * share, Kw -= KV * share;
-    }
-    const double size = w.dot(Mw);
-    if (!(size > 1e-16 * before) || !(before > 0)) return;
-    const double unit = 1 / std::sqrt(size);
-    const auto add = [](Matrix& to, const Vector& v) {
-      to.conservativeResize(Eigen::NoChange, to.cols() + 1);
-      to.rightCols(1) = v;
-    };
-    add(V, unit * w), add(MV, unit * Mw), add(KV, unit * Kw), add(CV, at.damping(unit * w));
-  }
-};
-
-/// Poles with their shapes in the span, those that swing with the one of each pair above the axis.
-struct Poles {
-  std::vector<Complex> pole;
-  Eigen::MatrixXcd shape;  // unit columns
-  bool swings(size_t i) const { return pole[i].imag() > 0; }
-};
-Poles poles_of(const Matrix& K, const Matrix& C) {
-  const Index n = K.rows();
-  const double unit = std::sqrt(std::max(K.cwiseAbs().maxCoeff(), 1e-300));  // of time, so that all entries are of one size
-  Matrix A = Matrix::Zero(2 * n, 2 * n);
-  A.topRightCorner(n, n).setIdentity();
-  A.bottomLeftCorner(n, n) = -K / (unit * unit), A.bottomRightCorner(n, n) = -C / unit;
-  const EigenPairs all = eigen_pairs(std::move(A));
-  Poles out;
-  out.shape.resize(n, 2 * n);
-  for (Index i = 0; i < 2 * n; ++i) {
-    const Complex p = unit * all.values[i];
-    if (p.imag() < 0) continue;
-    out.shape.col(static_cast<Index>(out.pole.size())) = all.vectors.col(i).head(n).normalized();
-    out.pole.push_back(p);
-  }
-  out.shape.conservativeResize(Eigen::NoChange, static_cast<Index>(out.pole.size()));
-  return out;
-}
-
-/// The poles of each mode: one that swings or two real ones, those that have most of it; none of modes that are rigid motions.
-std::vector<std::vector<size_t>> match(const Poles& poles, const std::vector<char>& is_rigid) {
-  std::vector<std::tuple<double, size_t, size_t>> order;  // share, mode, pole
-  for (size_t k = 0; k < is_rigid.size(); ++k)
-    for (size_t i = 0; i < poles.pole.size(); ++i)
-      order.emplace_back(-std::abs(poles.shape(static_cast<Index>(k), static_cast<Index>(i))), k, i);
-  std::sort(order.begin(), order.end());
-  std::vector<std::vector<size_t>> out(is_rigid.size());
-  std::vector<char> taken(poles.pole.size(), 0);
-  for (const auto& [share, k, i] : order) {
-    auto& of = out[k];
-    if (taken[i] || of.size() == 2 || (!of.empty() && (poles.swings(i) || poles.swings(of[0])))) continue;
-    of.push_back(i), taken[i] = 1;
-  }
-  for (size_t k = 0; k < out.size(); ++k)
-    if (is_rigid[k] || (out[k].size() == 1 && !poles.swings(out[k][0]))) out[k].clear();
-  return out;
-}
-
-/// Product of the pair, or minus the square of the one that grows; ratio to the critical damping.
-std::pair<double, double> figures_of(const Poles& poles, const std::vector<size_t>& pair) {
-  const Complex a = poles.pole[pair.front()], b = pair.size() == 2 ? poles.pole[pair.back()] : std::conj(a);
+/// Poles that are one mode: one that swings, two that creep, or one that creeps and has no other.
+using Mode = std::vector<size_t>;
+/// Product of the two poles, or minus the square of the one that grows; ratio to the critical damping.  Of one that creeps alone its square
+/// and 1.
+std::pair<double, double> figures_of(const Poles& poles, const Mode& mode) {
+  const Complex a = poles.value[mode.front()];
+  if (mode.size() == 1 && !poles.swings(mode.front())) return {-a.real() * std::abs(a.real()), a.real() < 0 ? 1 : 0};
+  const Complex b = mode.size() == 2 ? poles.value[mode.back()] : std::conj(a);
   const double product = (a * b).real(), sum = (a + b).real();
   if (product > 0) return {product, -sum / (2 * std::sqrt(product))};
   const double grows = std::max(a.real(), b.real());
   return {-grows * grows, 0};
 }
+double stiffness_of(const Poles& poles, const Mode& mode) { return figures_of(poles, mode).first; }
+
+/// All modes by rising frequency, and the poles that are left: of motions without mass, and how a drift dies away.
+struct Listed {
+  std::vector<Mode> modes;
+  std::vector<size_t> alone;
+};
+/// A real pole s is the slower or the faster root of its own m s^2 + c s + k, m = x.M x and so on: one of each is a pair, those with the
+/// most alike shapes first.  Poles up to `zero` are left out.
+Listed listed(const Poles& poles, const Matrix& M, const Matrix& C, double zero) {
+  Listed out;
+  std::vector<size_t> slow, fast;
+  for (size_t i = 0; i < poles.value.size(); ++i) {
+    if (std::abs(poles.value[i]) <= zero) continue;
+    const Vector x = poles.shape.col(static_cast<Index>(i)).real();
+    if (poles.swings(i))
+      out.modes.push_back({i});
+    else
+      (2 * poles.value[i].real() * x.dot(M * x) + x.dot(C * x) > 0 ? slow : fast).push_back(i);
+  }
+  std::vector<std::tuple<double, size_t, size_t>> order;
+  for (const size_t i : slow)
+    for (const size_t j : fast) {
+      const Vector x = poles.shape.col(static_cast<Index>(i)).real(), y = poles.shape.col(static_cast<Index>(j)).real();
+      order.emplace_back(-std::abs(x.dot(M * y)) / std::sqrt(x.dot(M * x) * y.dot(M * y)), i, j);
+    }
+  std::ranges::sort(order);
+  std::vector<char> taken(poles.value.size(), 0);
+  for (const auto& [share, i, j] : order)
+    if (!taken[i] && !taken[j]) out.modes.push_back({i, j}), taken[i] = taken[j] = 1;
+  for (const auto& of : {slow, fast})
+    for (const size_t i : of)
+      if (!taken[i]) out.alone.push_back(i);
+  std::ranges::sort(out.modes, {}, [&](const Mode& m) { return stiffness_of(poles, m); });
+  std::ranges::sort(out.alone, {}, [&](size_t i) { return std::abs(poles.value[i]); });
+  return out;
+}
+
+/// Of the `rows` that are asked for, the one that has most of each mode.
+std::vector<const Mode*> beside(const std::vector<size_t>& rows, const Poles& poles, const std::vector<Mode>& modes) {
+  std::vector<std::tuple<double, size_t, size_t>> order;
+  for (size_t k = 0; k < rows.size(); ++k)
+    for (size_t i = 0; i < modes.size(); ++i)
+      order.emplace_back(-std::abs(poles.shape(static_cast<Index>(rows[k]), static_cast<Index>(modes[i].front()))), k, i);
+  std::ranges::sort(order);
+  std::vector<const Mode*> out(rows.size(), nullptr);
+  std::vector<char> taken(modes.size(), 0);
+  for (const auto& [share, k, i] : order)
+    if (!out[k] && !taken[i]) out[k] = &modes[i], taken[i] = 1;
+  return out;
+}
 
 }  // namespace
 
-void add_damping(std::vector<FoundMode>& modes, const Linearized& at, double shift, size_t wanted) {
-  constexpr double enough = 2e-6;
-  constexpr int passes = 12;
-  constexpr Index most_more = 200;
-  const auto m = static_cast<Index>(modes.size()), asked = static_cast<Index>(wanted);
-  Span span{Matrix(at.n(), m), Matrix(at.n(), m), Matrix(at.n(), m), Matrix(at.n(), m)};
-  std::vector<char> is_rigid;
-  double fastest = 0;
-  for (const FoundMode& mode : modes) fastest = std::max(fastest, std::abs(mode.figures.omega2));
-  for (Index j = 0; j < m; ++j) {
-    const FoundMode& mode = modes[static_cast<size_t>(j)];
-    span.V.col(j) = Eigen::Map<const Vector>(mode.x.data(), at.n());
-    span.MV.col(j) = at.mass(span.V.col(j)), span.KV.col(j) = mode.figures.omega2 * span.MV.col(j),
-    span.CV.col(j) = at.damping(span.V.col(j));
-    is_rigid.push_back(std::abs(mode.figures.omega2) <= 1e-9 * shift);
+std::vector<std::string> add_damping(std::vector<FoundMode>& modes, const Linearized& at, double shift, size_t wanted) {
+  const auto asked = static_cast<Index>(wanted);
+  double fastest = 0, zero = 0;
+  std::vector<size_t> rows;  // no rigid motions
+  for (size_t j = 0; j < modes.size(); ++j) {
+    fastest = std::max(fastest, std::abs(modes[j].figures.omega2));
+    if (modes[j].is_rigid)
+      zero = 1e-6 * std::sqrt(shift);
+    else if (j < wanted)
+      rows.push_back(j);
   }
-  const Matrix C = (span.V.transpose() * span.CV + span.CV.transpose() * span.V) / 2;
+  QuadraticSpan span(at, shift, modes, [&](const Vector& x) { return std::pair{at.damping(x), Vector()}; });
+  const Vector scale = span.mass().diagonal().cwiseSqrt().cwiseInverse();
+  const Matrix C = scale.asDiagonal() * span.damping() * scale.asDiagonal();  // on modes of unit mass
   for (Index j = 0; j < asked; ++j) {
     const auto column = C.col(j).head(asked);
     modes[static_cast<size_t>(j)].figures.coupling.assign(column.begin(), column.end());
   }
-  if (!(C.cwiseAbs().maxCoeff() > 1e-12 * std::sqrt(fastest))) return;
+  if (!(C.cwiseAbs().maxCoeff() > 1e-12 * std::sqrt(fastest))) return {};
 
-  Poles best;
-  std::vector<std::vector<size_t>> best_pairs;
-  Vector least;
-  for (int pass = 0, stale = 0;; ++pass) {
-    const Matrix K = span.V.transpose() * span.KV;
-    Poles poles = poles_of((K + K.transpose()) / 2, span.V.transpose() * span.CV);
-    auto pairs = match(poles, is_rigid);
-    Vector error(asked);
-    std::vector<std::pair<Vector, Vector>> more;  // answers of K + shift M to what is left, and that
-    error.setZero();
-    for (Index j = 0; j < asked; ++j)
-      for (const size_t i : pairs[static_cast<size_t>(j)]) {
-        const Complex p = poles.pole[i];
-        const Eigen::VectorXcd y = poles.shape.col(static_cast<Index>(i));
-        const Eigen::VectorXcd left = span.MV * (p * p * y) + span.CV * (p * y) + span.KV * y;
-        double size = 0;
-        std::vector<std::pair<Vector, Vector>> of_pole;
-        for (const Vector& part : {Vector(left.real()), Vector(left.imag())}) {
-          Vector x;
-          at.solve(part, x);
-          size += x.dot(at.mass(x));
-          of_pole.emplace_back(std::move(x), part);
-        }
-        const double off = std::sqrt(std::abs(size));  // not a number remains one
-        if (!(off <= error[j])) error[j] = off;
-        if (!(off < enough)) std::move(of_pole.begin(), of_pole.end(), std::back_inserter(more));
-      }
-    const bool is_better = pass == 0 || error.maxCoeff() < least.maxCoeff() / 2;
-    stale = is_better ? 0 : stale + 1;
-    if (is_better) best = std::move(poles), best_pairs = std::move(pairs), least = error;
-    if (more.empty() || stale == 2 || pass == passes || span.V.cols() > m + most_more) break;  // what does not fall is rounding
-    const Index before = span.V.cols();
-    for (auto& [x, force] : more) span.extend(at, shift, std::move(x), force);
-    if (span.V.cols() == before) break;
-  }
-
+  const auto all_of = [&](const Poles& poles) {
+    const Index n = poles.shape.rows();
+    return listed(poles, span.mass().topLeftCorner(n, n), span.damping().topLeftCorner(n, n), zero);
+  };
+  const auto first_of = [&](const Listed& all) {
+    return std::vector(all.modes.begin(), all.modes.begin() + std::min(std::ssize(all.modes), std::ssize(rows)));
+  };
+  /// Poles that creep, beside the modes of the list and slower than the last of it.
+  const auto others_of = [&](const Poles& now, const Listed& all) {
+    std::vector<size_t> out = all.alone;
+    const auto first = first_of(all);
+    for (size_t k = first.size(); k < all.modes.size(); ++k)
+      if (all.modes[k].size() == 2) out.push_back(all.modes[k].front());
+    const double last = first.empty() ? 0 : std::sqrt(std::abs(stiffness_of(now, first.back())));
+    std::erase_if(out, [&](size_t i) { return std::abs(now.value[i]) > last; });
+    return out;
+  };
+  const Poles poles = span.settle([&](const Poles& now) {
+    const Listed all = all_of(now);
+    std::vector<size_t> out = others_of(now, all);
+    for (const Mode& mode : first_of(all)) out.insert(out.end(), mode.begin(), mode.end());
+    return out;
+  });
+  const Listed all = all_of(poles);
+  std::vector<Mode> first = first_of(all);
+  for (Mode& mode : first)
+    if (mode.size() == 2 && !(poles.error[mode.back()] < most_error)) mode.pop_back();  // it is too fast for these modes
+  const auto found = beside(rows, poles, first);
   // what a sum over these modes alone, as a response is, would make of it
-  Matrix K = Matrix::Zero(asked, asked);
-  for (Index j = 0; j < asked; ++j) K(j, j) = modes[static_cast<size_t>(j)].figures.omega2;
-  const Poles few = poles_of(K, C.topLeftCorner(asked, asked));
-  is_rigid.resize(wanted);
-  const auto few_pairs = match(few, is_rigid);
-  double worst = 0, ratio_here = 0, ratio_there = 0;
-  size_t who = 0;
-  for (size_t j = 0; j < wanted; ++j) {
-    if (best_pairs[j].empty()) continue;
-    NaturalMode& f = modes[j].figures;
-    std::tie(f.pole2, f.damping) = figures_of(best, best_pairs[j]);
-    f.error = std::max(f.error, least[static_cast<Index>(j)]);
-    if (few_pairs[j].empty()) continue;
-    const double there = figures_of(few, few_pairs[j]).second, off = std::abs(there - f.damping);
-    if (off > worst && off > 1e-3 && off > 0.05 * f.damping) worst = off, who = j + 1, ratio_here = f.damping, ratio_there = there;
+  const Poles few = span.of_modes(asked);
+  const Listed all_few = all_of(few);
+  const auto found_few = beside(rows, few, all_few.modes);
+  std::vector<std::string> notes;
+  double worst = 0;
+  std::string what;
+  for (size_t k = 0; k < rows.size(); ++k) {
+    NaturalMode& f = modes[rows[k]].figures;
+    if (!found[k]) {
+      f.error = 1;
+      continue;
+    }
+    std::tie(f.pole2, f.damping) = figures_of(poles, *found[k]);
+    for (const size_t i : *found[k]) f.error = std::max(f.error, poles.error[i]);
+    if (!found_few[k]) continue;
+    const double there = figures_of(few, *found_few[k]).second, off = std::abs(there - f.damping);
+    if (off > worst && off > 1e-3 && off > 0.05 * f.damping)
+      worst = off, what = fmt::format(
+                       "mode {} has the damping ratio {:.3g}; what sums these modes alone, as hilo-post response does, sees {:.3g}: "
+                       "ask for more modes",
+                       rows[k] + 1, f.damping, there);
   }
-  if (who > 0)
-    warn("modes", fmt::format("mode {} has the damping ratio {:.3g}; what sums these modes alone, as hilo-post response does, sees {:.3g}: "
-                              "ask for more modes",
-                              who, ratio_here, ratio_there));
+  if (worst > 0) notes.push_back(std::move(what));
+  std::string creep;
+  for (const size_t i : others_of(poles, all))
+    if (poles.error[i] < most_error) creep += fmt::format("{}{:.6g}", creep.empty() ? "" : ", ", poles.value[i].real());
+  if (!creep.empty()) notes.push_back("beside the modes listed there are motions that creep, with the poles " + creep + " 1/s");
+  return notes;
 }
 
 }  // namespace hilo

@@ -106,7 +106,7 @@ class ModeSteps final : public Steps {
   /// At rest friction of joints is a damper that lets nothing swing: a joint that sticks.
   void tell_stuck(const std::vector<FoundMode>& modes) const {
     const auto frictions = run_.scene.entries("friction");
-    const auto stuck = std::ranges::find_if(modes, [](const FoundMode& m) { return m.figures.damping > 1; });
+    const auto stuck = std::ranges::find_if(modes, [](const FoundMode& m) { return m.figures.damping >= 1; });
     if (frictions.empty() || stuck == modes.end()) return;
     warn(frictions.front().place.text(),
          fmt::format("{}: at rest it is a damper of mu N r^2/slip_velocity, and mode {} has the damping ratio {:.3g}: a joint that sticks "

@@ -9,50 +9,13 @@
 
 #include "base/error.hpp"
 #include "dynamics/modes/damped_modes.hpp"
+#include "dynamics/modes/rigid_motions.hpp"
 #include "linear/block_krylov.hpp"
 
 namespace hilo {
 namespace {
 
 using Vector = Eigen::VectorXd;
-
-/// Motions of the whole scene as one rigid body, along x, y, z and about axes through the origin: the forces of inertia (n x 6) of
-/// everything that moves along.
-struct RigidMotions {
-  Eigen::MatrixXd force;
-  Vec3 centre = Vec3::Zero();                     // of all mass, what is held too
-  Eigen::Matrix<double, Eigen::Dynamic, 6> drag;  // of dampers along x, y, z where what stands still swings along, and where it does not
-  RigidMotions(const System& system, const Linearized& at, const Config& q) : force(at.n(), 6), drag(at.n(), 6) {
-    drag.setZero();
-    Config v;
-    for (int k = 0; k < 6; ++k) {
-      const Vec3 e = Vec3::Unit(k % 3);
-      const auto moved = [&](const Vec3& p) { return k < 3 ? e : Vec3(e.cross(p)); };
-      const Mat3 spin = k < 3 ? Mat3(Mat3::Zero()) : skew(e);
-      combine(v, {{0, &q}});
-      for (size_t i = 0; i < q.x.size(); ++i) v.x[i] = moved(q.x[i]);
-      for (size_t b = 0; b < q.c.size(); ++b) v.c[b] = moved(q.c[b]), v.R[b] = spin * q.R[b];
-      for (size_t j = 0; j < q.Y.size(); ++j) v.Y[j] = spin * q.Y[j];
-      force.col(k) = at.mass_of(v);
-      if (const Energy all = system.energy(q, v); k < 2 && all.momentum[k] > 0) {  // angular momentum m centre x e
-        const Vec3 lever = all.angular / all.momentum[k];
-        if (k == 0) centre[1] = -lever[2], centre[2] = lever[1];
-        if (k == 1) centre[0] = lever[2];
-      }
-      if (k < 3 && system.traits().has_rates) {
-        drag.col(k) = at.damping_of(v, false);
-        v.c[0].setZero();
-        drag.col(3 + k) = at.damping_of(v);
-      }
-    }
-  }
-  /// Share of a mode of unit mass in these motions, those about axes through the centre of mass.
-  Vec6 part_of(const Vector& mode) const {
-    Vec6 p = force.transpose() * mode;
-    for (int k = 0; k < 3; ++k) p[3 + k] -= Vec3(Vec3::Unit(k)).cross(centre).dot(p.head<3>());
-    return p;
-  }
-};
 
 /// Half of the lowest squared frequency that is no rigid motion: there both are told apart, and the factors are exact.  A first look is
 /// taken far below the frequencies of single cells, and far above what rounding makes of motions that nothing holds.  Not a number where
@@ -79,9 +42,9 @@ double good_shift(Linearized& at, Pencil pencil, int wanted, const std::function
 }
 
 /// `found` modes, or all there are, none where more than wanted do not converge; the first `wanted` ones with their damping, where
-/// `damped`.
+/// `damped`, of which `notes` says what is to be said.
 std::vector<FoundMode> find_modes(const System& system, KktSolver& solver, const State& rest, int found, int wanted, bool damped,
-                                  const std::function<void(int)>& tell) {
+                                  const std::function<void(int)>& tell, std::vector<std::string>& notes) {
   Linearized at(system, solver, rest);
   const auto by_columns = [](const Eigen::MatrixXd& X, auto&& product) {
     Eigen::MatrixXd out(X.rows(), X.cols());
@@ -149,6 +112,7 @@ std::vector<FoundMode> find_modes(const System& system, KktSolver& solver, const
     const double norm = std::copysign(std::sqrt(shape.dot(at.mass(shape))), shape[most]);
     shape /= norm;
     f.figures.omega2 = f.figures.pole2 = modes.omega2[j];
+    f.is_rigid = std::abs(modes.omega2[j]) <= 1e-9 * pencil.shift;
     f.figures.error += std::sqrt(std::abs(change.dot(at.mass(change))));  // not a number remains one
     f.figures.part = rigid.part_of(shape), f.figures.mass = f.figures.part.cwiseAbs2();
     f.figures.drag = rigid.drag.transpose() * shape, f.figures.load = loads.dot(shape);
@@ -158,7 +122,7 @@ std::vector<FoundMode> find_modes(const System& system, KktSolver& solver, const
     clean.push_back(std::move(mu));
   }
   for (size_t j = 0; j < out.size(); ++j) out[j].mu = std::move(clean[j]);
-  if (damped && !out.empty()) add_damping(out, at, pencil.shift, std::min(out.size(), static_cast<size_t>(wanted)));
+  if (damped && !out.empty()) notes = add_damping(out, at, pencil.shift, std::min(out.size(), static_cast<size_t>(wanted)));
   return out;
 }
 
@@ -168,13 +132,17 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
                                      const std::function<void(int)>& tell) {
   const bool damped = at_rest && system.traits().has_rates;
   std::vector<FoundMode> modes;
+  std::vector<std::string> notes;
   for (int found = wanted;; found *= 2) {  // strong dampers couple the modes to many beyond those asked for
-    auto next = find_modes(system, solver, rest, found, wanted, damped, tell);
+    std::vector<std::string> further;
+    auto next = find_modes(system, solver, rest, found, wanted, damped, tell, further);
     const bool are_all = std::ssize(next) < found;
     next.resize(std::min(next.size(), static_cast<size_t>(wanted)));
-    if (!next.empty() || found == wanted) modes = std::move(next);
+    if (!next.empty() || found == wanted) modes = std::move(next), notes = std::move(further);
     const bool are_good = std::ranges::all_of(modes, [](const FoundMode& m) { return m.figures.error < most_error; });
-    if (!damped || are_all || are_good || found >= 4 * wanted) return modes;
+    if (damped && !are_all && !are_good && found < 4 * wanted) continue;
+    for (const std::string& note : notes) warn("modes", note);
+    return modes;
   }
 }
 

@@ -17,6 +17,7 @@ struct FoundMode {
   NaturalMode figures;
   std::vector<double> x;   // increments of the unknowns, of unit mass (3 x n_blocks before the multipliers)
   bool is_real = true;     // all of it swings in phase
+  bool is_rigid = false;   // nothing resists it
   std::vector<double> mu;  // multipliers, laid out like State::lambda
 };
 

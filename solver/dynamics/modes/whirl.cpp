@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "dynamics/modes/about_state.hpp"
-#include "linear/eigen_pairs.hpp"
+#include "dynamics/modes/quadratic_span.hpp"
+#include "dynamics/modes/rigid_motions.hpp"
 #include "system/collocation.hpp"
 #include "system/uneven.hpp"
 
@@ -17,6 +17,7 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
+using Complex = std::complex<double>;
 
 /// What the spin adds to the equations, in coordinates of the basis.
 class SpinTerms : AboutState {
@@ -26,9 +27,13 @@ class SpinTerms : AboutState {
     basis_.resize(n_, static_cast<Eigen::Index>(basis.size()));
     for (size_t j = 0; j < basis.size(); ++j) basis_.col(static_cast<Eigen::Index>(j)) = Eigen::Map<const Vector>(basis[j].x.data(), n_);
   }
-  const Matrix& basis() const { return basis_; }
   /// Way of a point by a unit of a mode.
   double largest_of(Eigen::Index j) const { return system_.largest_rate(rates(state_.q, basis_.col(j))); }
+  /// What it adds to C x and K x.
+  std::pair<Vector, Vector> of(const Vector& x) const {
+    const Column column = column_of(state_.q, state_.v, state_.a, x);
+    return {column.C, column.K};
+  }
 
   struct Terms {
     Matrix C, K;      // what moving adds
@@ -47,16 +52,12 @@ class SpinTerms : AboutState {
     }
     const Eigen::Index m = basis_.cols();
     Terms out{Matrix(m, m), Matrix(m, m), Matrix(m, m), Vector(m)};
-    const Vector none = Vector::Zero(n_);
     for (Eigen::Index j = 0; j < m; ++j) {
-      const Vector x = basis_.col(j) * (step / std::max(1e-300, system_.largest_rate(rates(q, basis_.col(j))) / system_.length));
-      const double by = x.norm() / basis_.col(j).norm();
-      const auto [still, moving] = residual(q, v, a, x, none);
-      const auto [still_back, moving_back] = residual(q, v, a, -x, none);
-      const Vector C = residual(q, v, a, none, x).second - residual(q, v, a, none, -x).second;
-      out.K.col(j) = basis_.transpose() * (moving - moving_back) / (2 * by), out.C.col(j) = basis_.transpose() * C / (2 * by);
-      out.standing.col(j) = basis_.transpose() * (still - still_back) / (2 * by);
+      const Column column = column_of(q, v, a, basis_.col(j));
+      out.K.col(j) = basis_.transpose() * column.K, out.C.col(j) = basis_.transpose() * column.C;
+      out.standing.col(j) = basis_.transpose() * column.standing;
     }
+    const Vector none = Vector::Zero(n_);
     const auto [still, moving] = residual(q, v, a, none, none);
     out.force = basis_.transpose() * (still + moving);
     return out;
@@ -64,6 +65,17 @@ class SpinTerms : AboutState {
 
  private:
   static constexpr double step = 1e-4;
+  struct Column {
+    Vector C, K, standing;
+  };
+  Column column_of(const Config& q, const Config& v, const Config& a, const Vector& direction) const {
+    const double by = step / std::max(1e-300, system_.largest_rate(rates(q, direction)) / system_.length);
+    const Vector x = direction * by, none = Vector::Zero(n_);
+    const auto [still, moving] = residual(q, v, a, x, none);
+    const auto [still_back, moving_back] = residual(q, v, a, -x, none);
+    const Vector C = residual(q, v, a, none, x).second - residual(q, v, a, none, -x).second;
+    return {C / (2 * by), (moving - moving_back) / (2 * by), (still - still_back) / (2 * by)};
+  }
   /// The residual at increments z, and what moving and accelerating add to it where they change with z'.
   std::pair<Vector, Vector> residual(const Config& q0, const Config& v0, const Config& a0, const Vector& z, const Vector& rate) const {
     Config q = q0, v = v0, a = a0;
@@ -101,7 +113,7 @@ void refuse_uneven(const System& system, const State& state, const SpinTerms& sp
   double largest = here.C.squaredNorm(), slowest = 1e300;
   for (const FoundMode& mode : basis) largest = std::max(largest, std::abs(mode.figures.omega2));
   for (const FoundMode& mode : basis)
-    if (const double x = std::abs(mode.figures.omega2); x > 1e-9 * largest) slowest = std::min(slowest, x);
+    if (!mode.is_rigid) slowest = std::min(slowest, std::abs(mode.figures.omega2));
   const Eigen::Index m = here.C.rows();
   Vector omega(m);  // by which entries are judged: a slow mode is not to hide behind fast ones
   for (Eigen::Index j = 0; j < m; ++j)
@@ -142,48 +154,52 @@ std::string not_steady(const System& system, const State& state) {
 std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, const State& state, const std::vector<FoundMode>& basis,
                                       int wanted) {
   const SpinTerms spin(system, solver, state, basis);
-  const SpinTerms::Terms here = spin.at(0);
   refuse_uneven(system, state, spin, basis);
-  const auto m = static_cast<Eigen::Index>(basis.size());
-  Matrix A = Matrix::Zero(2 * m, 2 * m);
-  A.topRightCorner(m, m).setIdentity();
-  A.bottomLeftCorner(m, m) = -here.K;
-  for (Eigen::Index j = 0; j < m; ++j) A(m + j, j) -= basis[static_cast<size_t>(j)].figures.omega2;
-  A.bottomRightCorner(m, m) = -here.C;
-  const EigenPairs pairs = eigen_pairs(std::move(A));
-  std::vector<Eigen::Index> order;  // one of each pair; real ones are kept where they grow
-  const auto mu = [&](Eigen::Index i) { return pairs.values[i]; };
-  const double largest = pairs.values.cwiseAbs().maxCoeff();
-  for (Eigen::Index i = 0; i < 2 * m; ++i)
-    if (mu(i).imag() > 1e-7 * largest || (std::abs(mu(i).imag()) <= 1e-7 * largest && mu(i).real() > 1e-7 * largest)) order.push_back(i);
-  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return std::abs(mu(a)) < std::abs(mu(b)); });
-  if (static_cast<int>(order.size()) > wanted) order.resize(static_cast<size_t>(wanted));
-  Eigen::Matrix<double, Eigen::Dynamic, 6> parts(m, 6);
-  for (Eigen::Index j = 0; j < m; ++j) parts.row(j) = basis[static_cast<size_t>(j)].figures.part.transpose();
-  const Eigen::MatrixXcd left = pairs.vectors.fullPivLu().inverse().rightCols(m) * parts;
+  double shift = 1e300;
+  for (const FoundMode& mode : basis)
+    if (!mode.is_rigid) shift = std::min(shift, std::abs(mode.figures.omega2) / 2);
+  if (shift == 1e300) shift = std::pow(system.largest_rate(state.v) / system.length, 2);
+  Linearized at(system, solver, state);
+  at.mean_omega2();
+  at.factor(shift);
+  QuadraticSpan span(at, shift, basis, [&](const Vector& x) { return spin.of(x); });
+  const auto swings = [](const Complex& s) { return s.imag() > 1e-7 * std::abs(s); };
+  const auto slowest = [&](const Poles& poles) {
+    std::vector<size_t> out;
+    for (size_t i = 0; i < poles.value.size(); ++i)
+      if (const Complex s = poles.value[i]; std::abs(s) > 1e-5 * std::sqrt(shift) && (swings(s) || s.real() > 0)) out.push_back(i);
+    std::ranges::sort(out, {}, [&](size_t i) { return std::abs(poles.value[i]); });
+    out.resize(std::min(out.size(), static_cast<size_t>(wanted)));
+    return out;
+  };
+  const Poles poles = span.settle(slowest);
+  const Eigen::Index n = poles.shape.rows();
+  const Matrix M = span.mass().topLeftCorner(n, n), C = span.damping().topLeftCorner(n, n);
+  const RigidMotions rigid(system, at, state.q);
+  Eigen::Matrix<double, Eigen::Dynamic, 6> parts(n, 6);
+  for (Eigen::Index j = 0; j < n; ++j) parts.row(j) = rigid.part_of(span.basis().col(j)).transpose();
   std::vector<FoundMode> out;
-  for (const Eigen::Index i : order) {
-    Eigen::VectorXcd y = pairs.vectors.col(i).head(m);
+  for (const size_t i : slowest(poles)) {
+    const Complex s = poles.value[i];
+    Eigen::VectorXcd y = poles.shape.col(static_cast<Eigen::Index>(i));
+    const Eigen::VectorXcd z = poles.left.col(static_cast<Eigen::Index>(i));
     Eigen::Index most = 0;
     y.cwiseAbs().maxCoeff(&most);
-    y *= std::conj(y[most]) / std::abs(y[most]) / y.norm();  // its largest share at its turning point
+    y *= std::conj(y[most]) / std::abs(y[most]);  // its largest share at its turning point
     FoundMode f;
     f.is_real = false;
-    const Vector x = spin.basis() * y.real();
-    f.x.assign(x.begin(), x.end());
-    f.mu.assign(state.lambda.size(), 0.0);
-    for (size_t j = 0; j < basis.size(); ++j) {
-      for (size_t k = 0; k < f.mu.size(); ++k) f.mu[k] += basis[j].mu[k] * y[static_cast<Eigen::Index>(j)].real();
-      f.figures.error = std::max(f.figures.error, basis[j].figures.error);
-    }
-    const bool swings = mu(i).imag() > 1e-7 * largest;
-    f.figures.omega2 = swings ? mu(i).imag() * mu(i).imag() : -mu(i).real() * mu(i).real();
-    f.figures.pole2 = swings ? std::norm(mu(i)) : f.figures.omega2;
-    f.figures.damping = swings ? -mu(i).real() / std::abs(mu(i)) : 0;
-    // with p the parts of the basis, p.(s^2 + s C + K)^-1 p = sum of r/(s - mu) over all poles, and the sum of r mu is p.p
+    const Vector x = span.basis().leftCols(n) * y.real(), mu = span.multipliers().leftCols(n) * y.real();
+    f.x.assign(x.begin(), x.end()), f.mu.assign(mu.begin(), mu.end());
+    f.figures.error = poles.error[i];
+    for (const FoundMode& mode : basis) f.figures.error = std::max(f.figures.error, mode.figures.error);
+    f.figures.omega2 = swings(s) ? s.imag() * s.imag() : -s.real() * s.real();
+    f.figures.pole2 = swings(s) ? std::norm(s) : f.figures.omega2;
+    f.figures.damping = swings(s) ? -s.real() / std::abs(s) : 0;
+    // with p the parts of the basis, p.(s^2 M + s C + K)^-1 p = sum of r/(s - mu) over all poles, and the sum of r mu is p.M^-1 p
+    const Complex slope = (z.transpose() * (2.0 * s * (M * y) + C * y)).value();
     for (int k = 0; k < 6; ++k)
       f.figures.mass[k] =
-          (swings ? 2 : 1) * (mu(i) * (pairs.vectors.col(i).head(m).transpose() * parts.col(k)).value() * left(i, k)).real();
+          (swings(s) ? 2 : 1) * (s * (y.transpose() * parts.col(k)).value() * (z.transpose() * parts.col(k)).value() / slope).real();
     out.push_back(std::move(f));
   }
   return out;
