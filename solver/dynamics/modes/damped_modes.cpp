@@ -39,7 +39,8 @@ struct Listed {
 };
 /// A real pole s is the slower or the faster root of its own m s^2 + c s + k, m = x.M x and so on: one of each is a pair, those with the
 /// most alike shapes first.  Poles up to `zero` are left out.
-Listed listed(const Poles& poles, const Matrix& M, const Matrix& C, double zero) {
+Listed listed(const Poles& poles, double zero) {
+  const Matrix &M = poles.M, &C = poles.C;
   Listed out;
   std::vector<size_t> slow, fast;
   for (size_t i = 0; i < poles.value.size(); ++i) {
@@ -104,10 +105,6 @@ std::vector<std::string> add_damping(std::vector<FoundMode>& modes, const Linear
   }
   if (!(C.cwiseAbs().maxCoeff() > 1e-12 * std::sqrt(fastest))) return {};
 
-  const auto all_of = [&](const Poles& poles) {
-    const Index n = poles.shape.rows();
-    return listed(poles, span.mass().topLeftCorner(n, n), span.damping().topLeftCorner(n, n), zero);
-  };
   const auto first_of = [&](const Listed& all) {
     return std::vector(all.modes.begin(), all.modes.begin() + std::min(std::ssize(all.modes), std::ssize(rows)));
   };
@@ -122,19 +119,19 @@ std::vector<std::string> add_damping(std::vector<FoundMode>& modes, const Linear
     return out;
   };
   const Poles poles = span.settle([&](const Poles& now) {
-    const Listed all = all_of(now);
+    const Listed all = listed(now, zero);
     std::vector<size_t> out = others_of(now, all);
     for (const Mode& mode : first_of(all)) out.insert(out.end(), mode.begin(), mode.end());
     return out;
   });
-  const Listed all = all_of(poles);
+  const Listed all = listed(poles, zero);
   std::vector<Mode> first = first_of(all);
   for (Mode& mode : first)
     if (mode.size() == 2 && !(poles.error[mode.back()] < most_error)) mode.pop_back();  // it is too fast for these modes
   const auto found = beside(rows, poles, first);
   // what a sum over these modes alone, as a response is, would make of it
   const Poles few = span.of_modes(asked);
-  const Listed all_few = all_of(few);
+  const Listed all_few = listed(few, zero);
   const auto found_few = beside(rows, few, all_few.modes);
   std::vector<std::string> notes;
   double worst = 0;
@@ -152,7 +149,7 @@ std::vector<std::string> add_damping(std::vector<FoundMode>& modes, const Linear
     if (off > worst && off > 1e-3 && off > 0.05 * f.damping)
       worst = off, what = fmt::format(
                        "mode {} has the damping ratio {:.3g}; what sums these modes alone, as hilo-post response does, sees {:.3g}: "
-                       "ask for more modes",
+                       "ask for more modes, or run it in time",
                        rows[k] + 1, f.damping, there);
   }
   if (worst > 0) notes.push_back(std::move(what));

@@ -30,7 +30,7 @@ void add_column(Eigen::MatrixXd& to, const Eigen::VectorXd& v) {
 
 // With s = u (1 + 1/t), u = sqrt(shift), t^2 (u^2 M + u C + K) + t u (C + 2 u M) + u^2 M is as good where M is singular: its infinite poles
 // have t = 0.
-Poles poles_of(const Eigen::MatrixXd& M, const Eigen::MatrixXd& C, const Eigen::MatrixXd& K, double shift) {
+Poles poles_of(Eigen::MatrixXd M, Eigen::MatrixXd C, const Eigen::MatrixXd& K, double shift) {
   const Index n = M.rows();
   const double u = std::sqrt(shift);
   const Eigen::PartialPivLU<Eigen::MatrixXd> first(shift * M + u * C + K);
@@ -55,6 +55,7 @@ Poles poles_of(const Eigen::MatrixXd& M, const Eigen::MatrixXd& C, const Eigen::
   }
   out.shape.conservativeResize(n, static_cast<Index>(out.value.size())), out.left.conservativeResize(n, out.shape.cols());
   out.error.assign(out.value.size(), 0);
+  out.M = std::move(M), out.C = std::move(C);
   return out;
 }
 
@@ -128,8 +129,9 @@ Poles QuadraticSpan::settle(const std::function<std::vector<size_t>(const Poles&
   Poles best;
   double least = 0;
   for (int pass = 0, stale = 0;; ++pass) {
-    const Matrix M = mass(), C = damping(), K = stiffness();
-    Poles poles = poles_of(M, C, K, shift_);
+    const Matrix K = stiffness();
+    Poles poles = poles_of(mass(), damping(), K, shift_);
+    const Matrix &M = poles.M, &C = poles.C;
     struct Answer {
       Vector x, force;
       std::vector<double> mu;
@@ -139,10 +141,12 @@ Poles QuadraticSpan::settle(const std::function<std::vector<size_t>(const Poles&
     for (const size_t i : wanted(poles)) {
       const Complex p = poles.value[i];
       auto y = poles.shape.col(static_cast<Index>(i));
-      // once more through the inverse: strong dampers push on what hardly moves, which is then to have all its digits
+      const double whole = std::max({(p * p * (M * y)).norm(), (p * (C * y)).norm(), (K * y).norm()});
       const Eigen::MatrixXcd Q = p * p * M + p * C + K;
-      const Eigen::VectorXcd again = Q.partialPivLu().solve(2.0 * p * (M * y) + C * y).normalized();
-      if ((Q * again).norm() < (Q * y).norm()) y = again;
+      if ((Q * y).norm() > 1e-2 * enough * whole) {  // strong dampers push on what hardly moves, which is to have all its digits
+        const Eigen::VectorXcd again = Q.partialPivLu().solve(2.0 * p * (M * y) + C * y).normalized();
+        if ((Q * again).norm() < (Q * y).norm()) y = again;
+      }
       Eigen::VectorXcd left = MV_ * ((p * p - shift_) * y) + CV_ * (p * y) + SV_ * y;
       if (DV_.rows() > 0) left += DV_ * y;
       double size = 0;
@@ -154,7 +158,6 @@ Poles QuadraticSpan::settle(const std::function<std::vector<size_t>(const Poles&
         size += a.x.dot(a.force);
         of_pole.push_back(std::move(a));
       }
-      const double whole = std::max({(p * p * (M * y)).norm(), (p * (C * y)).norm(), (K * y).norm()});
       const double off = poles.error[i] = std::sqrt(std::abs(size)) / whole;  // not a number remains one
       if (off < enough) continue;
       digits += std::isfinite(off) ? std::log10(off / enough) : 300;

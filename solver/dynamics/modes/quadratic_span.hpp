@@ -13,6 +13,7 @@ namespace hilo {
 
 /// Of each pair of poles the one above the axis, and the real ones.
 struct Poles {
+  Eigen::MatrixXd M, C;                     // on the span
   std::vector<std::complex<double>> value;  // [1/s]
   Eigen::MatrixXcd shape, left;             // unit columns; of the transposed problem
   std::vector<double> error;                // what is left of the equations, over the largest of their forces, where it was asked for
@@ -20,7 +21,7 @@ struct Poles {
 };
 
 /// Of matrices, K + shift M of the size of one.  Poles as good as infinite are left out.
-Poles poles_of(const Eigen::MatrixXd& M, const Eigen::MatrixXd& C, const Eigen::MatrixXd& K, double shift);
+Poles poles_of(Eigen::MatrixXd M, Eigen::MatrixXd C, const Eigen::MatrixXd& K, double shift);
 
 class QuadraticSpan {
  public:

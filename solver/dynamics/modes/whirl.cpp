@@ -174,7 +174,6 @@ std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, c
   };
   const Poles poles = span.settle(slowest);
   const Eigen::Index n = poles.shape.rows();
-  const Matrix M = span.mass().topLeftCorner(n, n), C = span.damping().topLeftCorner(n, n);
   const RigidMotions rigid(system, at, state.q);
   Eigen::Matrix<double, Eigen::Dynamic, 6> parts(n, 6);
   for (Eigen::Index j = 0; j < n; ++j) parts.row(j) = rigid.part_of(span.basis().col(j)).transpose();
@@ -196,7 +195,7 @@ std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, c
     f.figures.pole2 = swings(s) ? std::norm(s) : f.figures.omega2;
     f.figures.damping = swings(s) ? -s.real() / std::abs(s) : 0;
     // with p the parts of the basis, p.(s^2 M + s C + K)^-1 p = sum of r/(s - mu) over all poles, and the sum of r mu is p.M^-1 p
-    const Complex slope = (z.transpose() * (2.0 * s * (M * y) + C * y)).value();
+    const Complex slope = (z.transpose() * (2.0 * s * (poles.M * y) + poles.C * y)).value();
     for (int k = 0; k < 6; ++k)
       f.figures.mass[k] =
           (swings(s) ? 2 : 1) * (s * (y.transpose() * parts.col(k)).value() * (z.transpose() * parts.col(k)).value() / slope).real();
