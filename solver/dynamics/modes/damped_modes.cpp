@@ -144,7 +144,7 @@ std::vector<std::string> add_damping(std::vector<FoundMode>& modes, const Linear
     }
     std::tie(f.pole2, f.damping) = figures_of(poles, *found[k]);
     for (const size_t i : *found[k]) f.error = std::max(f.error, poles.error[i]);
-    if (!found_few[k]) continue;
+    if (!found_few[k] || f.damping == 1) continue;
     const double there = figures_of(few, *found_few[k]).second, off = std::abs(there - f.damping);
     if (off > worst && off > 1e-3 && off > 0.05 * f.damping)
       worst = off, what = fmt::format(
