@@ -139,6 +139,11 @@ on = "zmax"
                                        "output.fields = [\"displacement\", \"shell\"]\ntime.analysis = \"static\"\n";
   succeeded(tied.run("hilo-solve --quiet tied.toml mesh.h5 -o run.h5"));
   hold_against_schema(tied.results().file(), met);
+  SceneCase wing(solid(1e6, 0.3, 1000, "*", "kind = \"j2\"\nyield = 1e9", "shell = true") + held("xmin") + in_steps(1) +
+                 fields("\"stress\", \"von_mises\", \"stress_error\", \"plastic_strain\", \"shell\""));
+  wing.use(
+      block_mesh({.n = {2, 1, 1}, .high = {2, 1, 0.1}, .regions = {"root", "wing"}, .region_of = [](const Vec3& x) { return x[0] > 1; }}));
+  hold_against_schema(wing.solved().file(), met);
   std::ofstream(tied / "face.msh") << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
                                       "$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n";
   std::ofstream(tied / "beam.toml") << "material.m = {E = 1e6, nu = 0.3}\nsection.s = {kind = \"mesh\", file = \"face.msh\"}\n"
