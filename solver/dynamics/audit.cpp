@@ -57,7 +57,6 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   next_ = {};
   next_.energy = energy_of(system_, end, Side::left);
   next_.work = sums_.work + std::max(0.0, -taken_away), next_.dissipated = sums_.dissipated + std::max(0.0, taken_away);
-  if (system_.traits().searches) before = nullptr;  // contacts remember what was looked at last
   const double at_start = before ? system_.work(before->stage, before->lambda).external : 0;
   for (const Taken& part : taken) {
     const Work w = system_.work(part.stage, part.lambda);
