@@ -137,7 +137,6 @@ void run(const AtOptions& o) {
   RunFile run = judged_run(o.run);
   const MeshFile& file = run.mesh_file();
   const auto steps = run.select_steps(is_envelope(o.field) ? "last" : o.steps, is_envelope(o.field) ? "" : o.times);
-  if (!is_envelope(o.field)) warn_of_unseen_end(run, steps);
   const Shown shown = hilo::shown(o.field, run.fields(steps.front()));
   std::vector<bool> wanted = shown_regions(file.mesh, o.show, o.hide);
   for (size_t r = 0; r < wanted.size(); ++r)

@@ -101,7 +101,6 @@ void run(const ExportOptions& o) {
   if (!file.has_mesh() && (gltf || !file.beams().empty())) file.stand_in_bodies();
   file.draw_beams();
   const auto steps = file.select_steps(o.steps, o.times);
-  warn_of_unseen_end(file, steps);
   if (gltf) return export_gltf(o, file, steps);
   if (steps.size() != 1) throw Error("--steps", "one step makes one VTU file", "", Exit::usage);
   const Step& step = steps.front();

@@ -69,7 +69,6 @@ void run(MovieOptions o) {
   const auto all = frames.common_times();
   if (!(all.second > all.first)) throw Error(o.run, "has a single output: nothing moves", "see output.interval of the scene");
   const auto [from, to] = parse_times(o.times, all);
-  if (o.times.empty()) warn_of_unseen_end(frames.run(), frames.run().steps);
   std::vector<double> times, outputs, seen;
   const double slack = 1e-9 * (to - from), swing = 0.4;  // modes in a second
   const bool modes = !frames.run().shapes.empty();

@@ -43,7 +43,6 @@ void run(const PeakOptions& o) {
   // over all steps of the run, where it has that and nothing less was asked for
   const std::string envelope = o.field + "_envelope";
   const bool of_all = o.steps == "all" && o.times.empty() && run.has_field(steps.back(), envelope);
-  if (!of_all || of_beams) warn_of_unseen_end(run, steps);
   const auto of_steps = [&](const std::vector<bool>& regions) {
     return field_peaks(
         run, steps, regions, [&](const Step& step, int r) { return reduced(run.field_in(r, step, field.array), field, run.path); },

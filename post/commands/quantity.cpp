@@ -38,8 +38,6 @@ void run(const QuantityOptions& o) {
   }
   for (const QuantityValue& v : shown)
     if (!v.why.empty()) warn("", v.why);
-  if (std::ranges::any_of(shown, [](const QuantityValue& v) { return v.measured == Measured::stress && v.why.empty(); }))
-    warn_of_unseen_end(file, file.steps);
   const Table table = quantity_table(shown);
   write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }

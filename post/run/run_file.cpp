@@ -133,32 +133,12 @@ void RunFile::read_skin() {
   }
 }
 
-namespace {
-
-/// Time of the last row; none: there is no row.
-std::optional<double> last_row(const RunFile& run) {
-  if (!run.store().has("/history/t")) return {};
-  const auto t = run.store().read<double>("/history/t");
-  return t.empty() ? std::nullopt : std::optional(t.back());
-}
-
-}  // namespace
-
 RunFile judged_run(const std::string& path) {
   RunFile run(path);
   if (run.complete) return run;
-  const auto end = last_row(run);
-  warn(path, "the run is not complete: in progress or stopped" + (end ? fmt::format(", it has come to t = {:.6g} s", *end) : ""));
+  const auto t = run.store().has("/history/t") ? run.store().read<double>("/history/t") : std::vector<double>{};
+  warn(path, "the run is not complete: in progress or stopped" + (t.empty() ? "" : fmt::format(", it has come to t = {:.6g} s", t.back())));
   return run;
-}
-
-void warn_of_unseen_end(const RunFile& run, const std::vector<Step>& outputs) {
-  const auto end = last_row(run);
-  if (!run.complete || !end || outputs.empty() || outputs.back().key != run.steps.back().key) return;
-  const double t = run.steps.back().t;
-  if (t < *end - 1e-9 * std::abs(*end))
-    warn(run.path,
-         fmt::format("its last fields are those of t = {:.6g} s, it ends at {:.6g} s: output.interval does not divide it", t, *end));
 }
 
 void RunFile::close() { store_.reset(); }

@@ -119,8 +119,6 @@ class RunFile {
 
 /// A run that is to be judged: warns where it is not complete.
 RunFile judged_run(const std::string& path);
-/// Warns where a complete run goes on after the last of these outputs and has none later: the end itself has no fields.
-void warn_of_unseen_end(const RunFile& run, const std::vector<Step>& outputs);
 
 /// The scene of a run without its histories: their CSV files may be elsewhere by now.
 Scene scene_of(const RunFile& run);

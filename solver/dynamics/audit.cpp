@@ -84,22 +84,25 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   // Sums of large energies are rounded, and so are positions: to 1e-12 of the scene at most.
   const double terms = std::abs(next_.energy.elastic) + std::abs(next_.energy.gravity) + std::abs(next_.work) + next_.dissipated;
   const double h = end.t - t_, way = rounding * system_.length;
-  rounding_next_ = std::max(rounding_, rounding * terms + way * way * (system_.stiffness + system_.mass / (h * h)));
+  // Where strain is stored, a rounded position is one under load: its work is of first order.
+  const double loaded = digit * system_.length * std::sqrt(2 * system_.stiffness * std::abs(next_.energy.elastic));
+  rounding_next_ = std::max(rounding_, rounding * terms + way * way * (system_.stiffness + system_.mass / (h * h)) + loaded);
   const double step = std::abs(next_.balance - now_.balance - (next_.left - now_.left)), sum = std::abs(next_.balance - next_.left);
+  double scale = 0, scale_of_sum = 0;
   const auto compare = [&] {
     // From rest the kinetic energy says little of what is to come; gravity's will be compared with it at the end.
-    const double scale = moving_next_ + (rounding_next_ + 1e-10 * system_.mass * system_.gravity.norm() * system_.length) / energy_bound_;
-    step_ = step / scale, sum_ = sum / scale;
-    return scale;
+    const double from_rest = moving_next_ + 1e-10 * system_.mass * system_.gravity.norm() * system_.length / energy_bound_;
+    scale = from_rest + rounding_next_ / energy_bound_, scale_of_sum = from_rest + rounded(rounding_next_) / energy_bound_;
+    step_ = step / scale, sum_ = sum / scale_of_sum;
   };
-  double scale = compare();
+  compare();
   if (!(std::max(step_, sum_) <= energy_bound_)) {  // loads may have grown since the start
     rounding_next_ = std::max(rounding_next_, digit * largest_force(system_, end) * system_.length);
-    scale = compare();
+    compare();
   }
   if (!(step_ <= energy_bound_)) return fmt::format("the step changes the balance of energy by {:.2g} J of {:.2g} J", step, scale);
   if (!(sum_ <= energy_bound_ * std::max(1.0, n_steps_ / 1000)))
-    return fmt::format("the balance of energy is off by {:.2g} J of {:.2g} J", sum, scale);
+    return fmt::format("the balance of energy is off by {:.2g} J of {:.2g} J", sum, scale_of_sum);
   const double came = scale + std::abs(next_.energy.elastic - start_.elastic) + std::abs(next_.energy.gravity - start_.gravity) +
                       std::abs(next_.work) + next_.dissipated;
   left_ = std::abs(next_.left) / came;
@@ -137,7 +140,8 @@ void Audit::accept(double t) {
 }
 
 std::string Audit::verdict() const {
-  if (!energy_unchecked_.empty() || unexplained_ <= energy_bound_ * std::max(1.0, n_steps_ / 1000) * moving_ + rounding_) return "";
+  if (!energy_unchecked_.empty() || unexplained_ <= energy_bound_ * std::max(1.0, n_steps_ / 1000) * moving_ + rounded(rounding_))
+    return "";
   return fmt::format("the balance of energy is off by {:.2g} J, and the kinetic energy was never above {:.2g} J", unexplained_, moving_);
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The audit of a run: what is known exactly is checked at every step, before the step is accepted.
 //
-//   energy      |dE - dW + dD - N|, where the method keeps it  <= bound x largest kinetic energy so far + rounding
+//   energy      |dE - dW + dD - N|, where the method keeps it  <= bound x largest kinetic energy so far + rounding,
+//                                                               of n steps sqrt(n) times that of one
 //               N, what Newton left: the work of its residual, and of multipliers as rows open: the tolerance, and told
 //               |N|                                          <= max(1e-4, bound) x all energies that came or went
 //   joint rows  |g|, of the rows kept and of those dropped   <= bound x length of the scene
@@ -10,6 +11,7 @@
 //
 // with bound = max(1e-8, 10 solver.tolerance) of energy and max(1e-9, 20 solver.tolerance) of rows: Newton leaves up to ten of the latter.
 #pragma once
+#include <cmath>
 #include <span>
 #include <string>
 
@@ -61,6 +63,8 @@ class Audit {
 
  private:
   double opened(const std::vector<double>& gaps, std::span<const Taken> taken);
+  /// Of all steps, where each rounds by `one`, either way.
+  double rounded(double one) const { return one * std::sqrt(n_steps_ + 1); }
   struct Worst {                                      // of the accepted steps, each with its time
     double step = 0, step_t = 0, sum = 0, sum_t = 0;  // energy, over what it is judged by
     struct Left {

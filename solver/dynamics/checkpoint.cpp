@@ -115,7 +115,8 @@ void Checkpoints::write(const StepsSoFar& so_far, const std::function<Kept()>& k
     f.write<std::uint8_t>("/kept/alike", std::span(bytes, kept.bytes.size()), {static_cast<std::int64_t>(kept.bytes.size())});
     for (size_t k = 0; k < kept.arrays.size(); ++k)
       f.write<double>(fmt::format("/kept/spread/{:06}", k), kept.arrays[k], {static_cast<std::int64_t>(kept.arrays[k].size())});
-    if (newest_is_good_ && ::rename(path.c_str(), former(output_).c_str()) != 0)
+    const bool moved = newest_is_good_ && ::rename(path.c_str(), former(output_).c_str()) == 0;
+    if (newest_is_good_ && !moved && errno != ENOENT)  // another pass of the run begins without
       throw Error(path, fmt::format("cannot rename: {}", std::strerror(errno)), "", Exit::resources);
     f.publish();
     if (!former_is_ours_) ::unlink(former(output_).c_str());

@@ -248,6 +248,7 @@ class Run {
     const bool in_time = run_.analysis == Analysis::dynamic;
     setup.path = options_.output;
     setup.interval = output.given("interval") ? output.number("interval") : in_time ? time.number("end") / 50 : 0;
+    if (in_time) setup.end = time.number("end");
     setup.fields = output.texts("fields");
     setup.single_precision = output.text("precision") == "single";
     setup.skin = output.text("nodes") == "skin";

@@ -84,7 +84,7 @@ Wanted wanted(const Scene& scene, const System& system) {
   if (!time.has("end")) return w;
   const double end = time.number("end"), interval = output.given("interval") ? output.number("interval") : end / 50;
   if (time.has("step")) w.steps = end / time.number("step");
-  double outputs = interval > 0 ? std::floor(end / interval + 1e-9) : w.steps;
+  double outputs = interval > 0 ? std::ceil(end / interval - 1e-9) : w.steps;
   if (w.steps > 0) outputs = std::min(outputs, w.steps);  // at steps
   w.fields = field_bytes(scene, system) * (1 + outputs) + topology_bytes(system);
   if (output.boolean("envelope") && system.mesh) w.fields += 6 * 8 * static_cast<double>(system.mesh->n_nodes_global);

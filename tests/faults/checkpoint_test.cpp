@@ -97,6 +97,18 @@ TEST_F(Stopped, GoesOnToTheSameNumbersAndToALaterEnd) {
   EXPECT_NE(work.run("hilo-show run.h5").out.find("--set time.end=0.5"), std::string::npos);
 }
 
+/// A second pass makes its results anew, and its checkpoints.
+TEST_F(Stopped, PassesOfAToleranceKeepTheirOwnCheckpoints) {
+  const std::string solve = "hilo-solve scene.toml --set time.end=3 --set time.tolerance=1e-5 ";
+  const auto rows = [&](const std::string& file) { return hilo::Store::open(work / file).read<double>("/history/joint/pin"); };
+  const auto kept = work.run(solve + "--checkpoint 100steps");
+  EXPECT_EQ(kept.exit, 0) << kept.err;
+  EXPECT_NE(kept.err.find("once more"), kept.err.npos) << kept.err;
+  const std::vector<double> whole = rows("run.h5");
+  ASSERT_EQ(work.run("mv run.checkpoint-1.h5 run.checkpoint.h5; hilo-solve --restart run.h5 --quiet --checkpoint 100steps").exit, 0);
+  EXPECT_EQ(rows("run.h5"), whole);
+}
+
 // The preconditioner of cg is made again after each checkpoint, so this run's last digits show where its checkpoints were.
 TEST_F(Stopped, WithoutTheOptionCheckpointsGoOnAsTheRunHadThem) {
   work.write("deck.inp", deck);

@@ -63,7 +63,7 @@ void Recorder::archive(Archive& a) {
   if (interval != setup_.interval && setup_.interval > 0)
     next_field_ = setup_.interval * (std::floor(last_t_ * (1 + 1e-9) / setup_.interval) + 1);
   if (a.restores())
-    for (Row& row : rows_) row.jump = is_jump(row.t);  // at what was the end there was none
+    for (Row& row : rows_) row.jump = is_jump(row.t), row.field = row.field && !row.last;  // at what was the end there was none
   if (mesh_) mesh_->archive(a);
   if (share_) share_.emplace(system_);  // its factors are made anew on either side
   if (a.restores()) open(n_written_ > 0);
@@ -93,11 +93,10 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
   row.newton = iterations, last_t_ = s.t;
   row.point = std::move(numbers.end);
   row.jump = is_jump(s.t);
-  row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
+  const bool due = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
+  if (due && setup_.interval > 0) next_field_ = setup_.interval * (std::floor(s.t * (1 + 1e-9) / setup_.interval) + 1);
+  row.last = !due && s.t >= setup_.end - system_.same_time, row.field = due || row.last;
   if (row.field || setup_.envelope) row.q = s.q, row.v = v, row.memory = system_.part<Solids>().memory();
-  if (row.field) {
-    if (setup_.interval > 0) next_field_ = setup_.interval * (std::floor(s.t * (1 + 1e-9) / setup_.interval) + 1);
-  }
   rows_.push_back(std::move(row));
   advance(false);
   commit(RunOutput::When::now_and_then);

@@ -4,6 +4,7 @@
 // Mid-step values (accelerations, reactions of energy-momentum) become values at t_n by linear interpolation between the two mid-points
 // around it, a_n = (h_n a_{n+1/2} + h_{n+1} a_{n-1/2})/(h_n + h_{n+1}); at the ends and where a load jumps, by extrapolation from one side.
 #pragma once
+#include <cmath>
 #include <deque>
 #include <optional>
 
@@ -17,8 +18,9 @@ namespace hilo {
 class Recorder {
  public:
   struct Setup {
-    std::string path;     // run.h5
-    double interval = 0;  // between fields [s]
+    std::string path;       // run.h5
+    double interval = 0;    // between fields [s]
+    double end = HUGE_VAL;  // of the run [s], which has fields too
     std::vector<std::string> fields;
     bool single_precision = false;
     bool skin = false;          // fields of the nodes on the surfaces of regions alone
@@ -48,8 +50,8 @@ class Recorder {
  private:
   struct Row {  // an instant t_n
     double t = 0;
-    std::vector<double> point;  // values that belong to t_n
-    bool jump = false, field = false;
+    std::vector<double> point;                       // values that belong to t_n
+    bool jump = false, field = false, last = false;  // last: it has fields as the end of the run alone
     Config q, v;  // kept where a field is due or an envelope looks on, and what the cells remember, by batch
     CellMemory memory;
     int newton = 0;

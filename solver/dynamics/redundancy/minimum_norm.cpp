@@ -123,6 +123,7 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
     if (row.active) size += lambda[row.place] * lambda[row.place] * square;
   }
   size = std::sqrt(size);
+  if (size == 0) return std::vector<double>(lambda.size(), 0.0);  // nothing that moves has a row, or all rows are at rest
   std::vector<double> best;
   Eigen::VectorXd left;  // of f by the best
   // conjugate gradients on G^T G y = f, from nothing: what an instant before left where rows hardly act would be shares that mean nothing.
@@ -154,13 +155,13 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
     return best;
   }
   Eigen::Index worst = 0;
-  if (left.size() > 0) left.cwiseAbs().maxCoeff(&worst);
+  left.cwiseAbs().maxCoeff(&worst);
   const auto met = std::ranges::find(column_, static_cast<int>(worst / 3), [](int c) { return c / 3; }) - column_.begin();
   const Row& row = *std::ranges::upper_bound(rows_, std::min(static_cast<size_t>(met), column_.size() - 1), {}, &Row::end);
   if (!told_)
     warn("",
          fmt::format("{}: shares of redundant rows are not found (off by {:.1e}): at such instants reactions are those of the rows kept",
-                     system_.constraints()[row.joint]->label(), size > 0 ? left.norm() / size : 1));
+                     system_.constraints()[row.joint]->label(), left.norm() / size));
   told_ = true;
   return {lambda.begin(), lambda.end()};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Positions, rates and reactions of single-joint pendulums as ADAMS gives them (Chrono data/testing/joints).  Rforce is
 // the force on the ground, minus ours, which is on b in the joint frame.  Chrono accepts 1e-3 m, 1e-4 m/s and 2e-2 N; here h = 1e-3 s.
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::joints_test {
@@ -97,6 +98,16 @@ TEST(SingleJoint, Prismatic02SlidesDownItsGuideExactly) {
       expect_position(r, 5, {3, -59.2916, -58.2916});
   const Mat3 frame = frame_of_axis({0, 1, 1}, {1, 0, 0});
   for (double t : {0.0, 1.0, 5.0}) expect_force_on_ground(r, t, {0, 4.90332, -4.90332}, frame);
+}
+
+// No row of the joint moves anything.
+TEST(SingleJoint, OfABodyThatIsHeldHasNoForce) {
+  SceneCase c(body("b", 1, {0, 0, 0}, {1, 1, 1}) + motion("fixed", "base", "b", "") +
+              axial("revolute", "guide", "ground", "b", {0, 0, 0}, {0, 0, 1}) + push("b", {0, 5, 0}) + in_time(0.06, 1e-3));
+  const Ran o = c.run("hilo-solve --quiet scene.toml");
+  EXPECT_EQ(o.exit, 0);
+  EXPECT_EQ(o.err, "");
+  EXPECT_EQ(c.results("run.h5").history("joint/guide").cwiseAbs().maxCoeff(), 0);
 }
 
 // Truth: at rest a joint carries the weight at the joint point and its moment r x m g; on b, and with the opposite sign when the ends are

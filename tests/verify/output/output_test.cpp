@@ -116,5 +116,27 @@ TEST(Output, InSinglePrecisionIsRoundedAndHalfAsLarge) {
   EXPECT_GT(largest, 0);
 }
 
+/// Fields at the first step at or behind each multiple of output.interval, and at the end.  A run that goes on has those of one that was
+/// never cut.
+TEST(Output, HasTheLastStateWhateverTheInterval) {
+  SceneCase c(scene);
+  Mesh mesh = block(2, 2, 2, {"front", "back"}, [](int i) { return i; });
+  for (std::int64_t n = 0; n < mesh.n_nodes(); ++n)
+    if (mesh.X[n].x() == 2) mesh.node_sets["end"].push_back(n);
+  c.use(mesh);
+  const auto times = [&](const Results& r) {
+    std::string out;
+    for (const std::string& step : r.steps()) out += fmt::format(" {:g}", 1e3 * r.field_time(step));
+    return out;
+  };
+  const std::string by = "--set time.step=1e-3 --set output.interval=6e-3 ";
+  EXPECT_EQ(times(c.solved(by, "run.h5")), " 0 6 12 18 20");
+  EXPECT_EQ(times(c.solved(by + "--set output.interval=1", "ends.h5")), " 0 20");
+  (void)c.solved(by + "--set time.end=0.01 --checkpoint 5steps", "cut.h5");
+  EXPECT_EQ(times(c.results("cut.h5")), " 0 6 10");
+  succeeded(c.run("hilo-solve --quiet --restart cut.h5 --set time.end=0.02"));
+  EXPECT_EQ(times(c.results("cut.h5")), " 0 6 12 18 20");
+}
+
 }  // namespace
 }  // namespace hilo::test::output_test
