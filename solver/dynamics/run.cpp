@@ -13,6 +13,7 @@
 #include "dynamics/redundancy/contradiction.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start/start.hpp"
+#include "system/linear_regions.hpp"
 #include "system/modal_damping.hpp"
 #include "system/revising.hpp"
 #include "system/springs.hpp"
@@ -272,16 +273,18 @@ class Run {
   /// The walk through all that the run remembers, in two parts: what the recorder is made from, and the rest.
   void archive_start(Archive& a) {
     std::vector<std::string> bodies;  // sections of beams too
-    std::vector<double> modes;        // numbers of them and how far they reach: of another reduction these are others
+    std::vector<double> modes;        // what they move: of another reduction these are others
     for (const Body& body : run_.system.bodies) bodies.push_back(body.name);
-    for (const Modes& of : run_.system.modes) {
-      modes.push_back(of.n_modes);
-      modes.insert(modes.end(), of.lever.begin(), of.lever.end());
+    double largest = 0;
+    for (const LinearRegion& of : run_.system.part<LinearRegions>().regions) {
+      modes.insert(modes.end(), of.sites.data(), of.sites.data() + of.sites.size());
+      if (of.sites.size() > 0) largest = std::max(largest, of.sites.cwiseAbs().maxCoeff());
     }
     auto kept_bodies = bodies;
     auto kept_modes = modes;
     a("bodies", kept_bodies, kept_modes);
-    if (kept_bodies != bodies || !std::ranges::equal(kept_modes, modes, [](double x, double y) { return std::abs(x - y) <= 1e-6 * y; }))
+    const auto alike = [&](double x, double y) { return std::abs(x - y) <= 1e-4 * largest; };
+    if (kept_bodies != bodies || !std::ranges::equal(kept_modes, modes, alike))
       throw Error(run_.scene.path, "the run that was kept has other bodies, sections of beams or modes of regions",
                   "run the scene from its start");
     a("start", run_.redundancy, run_.state, run_.report, run_.figures, run_.impulses, run_.plan, run_.estimate);

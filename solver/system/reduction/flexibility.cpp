@@ -208,7 +208,12 @@ void Flexibility::find_room() {
 }
 
 Flexibility::Matrix Flexibility::solve(Matrix F) const {
-  if (free_) F -= M_rigid_ * (rigid_.transpose() * F);
+  if (free_) {
+    const Vector whole = F.colwise().norm();
+    F -= M_rigid_ * (rigid_.transpose() * F);
+    for (Eigen::Index k = 0; k < F.cols(); ++k)  // it moves the region as a rigid body: what is left is rounding
+      if (F.col(k).norm() < 1e-10 * whole[k]) F.col(k).setZero();
+  }
   Matrix z = on_unknowns(F);
   const auto tell = time_left(in_.progress, "answers to loads");
   const Index width = factor_.columns_at_once();

@@ -159,13 +159,13 @@ InterfaceMotions interface_motions(const ReductionInput& in) {
 }
 
 /// What the nodes that lie farthest out along the axes and diagonals of space are displaced by, over the distance between them.
-Matrix at_sites(const std::vector<Vec3>& X, const Vec3& centre, const Matrix& shapes) {
+Matrix at_sites(const std::vector<Vec3>& X, const Matrix& shapes) {
   std::vector<size_t> sites;
   for (int k = 0; k < 27; ++k) {
-    const Vec3 way(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    const Vec3 way(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1), tilted = way + Vec3(1e-4, 2e-4, 3.7e-4);  // of nodes as far it chooses one
     size_t far = 0;
     for (size_t i = 0; i < X.size(); ++i)
-      if ((X[i] - centre).dot(way) > (X[far] - centre).dot(way)) far = i;
+      if ((X[i] - X[far]).dot(tilted) > 0) far = i;
     if (way != Vec3::Zero()) sites.push_back(far);
   }
   double length = 0;
@@ -240,7 +240,28 @@ struct ModeBasis {
     V.conservativeResize(Eigen::NoChange, kept), MV.conservativeResize(Eigen::NoChange, kept);
     in.points.empty() ? by_mass(std::move(V), MV, out) : by_energy(std::move(V), MV, out);
     add_product(-1, rigid, transposed_times(M_rigid, out.shapes), out.shapes);
+    settle(out);
     check(out);
+  }
+
+  /// Modes have no sign, and those of one frequency no axes of their own: rounding would choose, on other ranks otherwise.  Waves through
+  /// the region, which no symmetry makes zero, choose instead: of modes of one frequency the first alone meets the first wave, and so on.
+  void settle(Reduction& out) const {
+    constexpr double same = 1e-6;  // of squared frequencies
+    const Index m = out.omega2.size();
+    for (Index first = 0, next = 0; first < m; first = next) {
+      for (next = first + 1; next < m && out.omega2[next] - out.omega2[next - 1] < same * out.omega2[next];) ++next;
+      const Index n = next - first;
+      Matrix met = Matrix::Zero(n, n);  // modes x waves
+      for (Index w = 0; w < n; ++w)
+        for (size_t i = 0; i < in.X.size(); ++i) {
+          const double at = Vec3(1.3, 2.1, 3.7).dot(in.X[i] - in.centre) / in.length + 0.6 + 1.1 * static_cast<double>(w);
+          met.col(w) += std::sin(at) * out.shapes.block(3 * static_cast<Index>(i), first, 3, n).transpose() * Vec3(1, 0.7, 0.4);
+        }
+      const Eigen::HouseholderQR<Matrix> qr(met);
+      const Vector sign = qr.matrixQR().diagonal().unaryExpr([](double x) { return x < 0 ? -1.0 : 1.0; });
+      out.shapes.middleCols(first, n) *= Matrix(qr.householderQ()) * sign.asDiagonal();
+    }
   }
 
   void by_mass(Matrix V, const Matrix& MV, Reduction& out) const {
@@ -422,7 +443,7 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
                   "fewer vibration modes: [region.NAME] modes or up_to");
     out.strain = quadratic_strain(cells, out.shapes, out.omega2, in.length, tell);
   }
-  out.sites = at_sites(in.X, in.centre, out.shapes);
+  out.sites = at_sites(in.X, out.shapes);
   tell("error");
   out.left_out = energy_left_out(cells, flexibility, out);
   SecondOrder second = second_order(in, out.shapes, out.omega2, cells.times_mass(parts.front().leftCols(interfaces.n_rigid)));

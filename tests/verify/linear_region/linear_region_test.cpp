@@ -96,6 +96,28 @@ TEST(LinearRegion, IsTheSameOnTwoRanks) {
   for (size_t i = 0; i < serial.size(); ++i) EXPECT_LT((ranks[i] - serial[i]).norm(), 1e-11) << i;
 }
 
+// Modes have no sign of their own, and those of a square bar in pairs no axes: a run goes on, on other ranks, with modes of the same.
+TEST(LinearRegion, GoesOnOnOtherRanks) {
+  const std::string nudge = force("nudge", "xmax", {0, 2, 5}, "history = {t = [0, 0.02, 0.04], value = [0, 1, 0]}");
+  const std::string middle = "[set.middle]\nkind = \"plane\"\nat = [0.5, 0, 0]\naxis = [1, 0, 0]\n";
+  for (const std::string& holds : {std::string(), held("xmin"), middle + held("middle")}) {
+    SceneCase c(soft + holds + nudge + in_time(0.079, 1.58e-3) + fields("\"displacement\"", "interval = 0.079") + solved_to(1e-12));
+    c.use(bar(0, 1, 6), {Fidelity::linear});
+    const auto whole = c.solved().field("displacement");
+    const std::string cut = "hilo-solve --quiet scene.toml tags.h5 --set time.end=0.04 --checkpoint 10steps -o cut.h5",
+                      on = "hilo-solve --quiet --restart cut.h5 --set time.end=0.079";
+    for (const int first : {1, 2}) {
+      succeeded(first == 1 ? c.run(cut) : mpirun(2, cut, c.path()));
+      succeeded(first == 2 ? c.run(on) : mpirun(2, on, c.path()));
+      const auto on_others = c.results("cut.h5").field("displacement");
+      double off = 0, most = 0;
+      for (size_t i = 0; i < whole.size(); ++i)
+        off = std::max(off, (on_others[i] - whole[i]).norm()), most = std::max(most, whole[i].norm());
+      EXPECT_LT(off, 1e-7 * most) << first << holds;
+    }
+  }
+}
+
 // Modes do not stiffen: a free bar turns at 18.3 rad/s, its first frequency is 64.6 sqrt(E/1e7) rad/s.
 TEST(LinearRegion, ThatSpinsNearItsFirstFrequencyIsWarnedOfAndBeyondItRefused) {
   SceneCase c(in_flight);
