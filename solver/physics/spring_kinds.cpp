@@ -108,9 +108,11 @@ std::vector<Param> support_keys() {
                           {"stiffness", number, "N/m", "!", "normal force per penetration, never a pull", at_least(0)},
                           {"damping", number, "N s/m", "0", "normal damping while in contact", at_least(0)}};
   for (const Param& p : rebound_keys("m/s")) keys.push_back(p);
-  keys.insert(keys.end(), {{"clearance", number, "m", "0", "gap at the start; negative is penetration"},
-                           {"tangential_stiffness", numbers, "N/m", "[0, 0]", "along `x` and along axis x `x`", at_least(0), {2}},
-                           {"tangential_damping", numbers, "N s/m", "[0, 0]", "along `x` and along axis x `x`", at_least(0), {2}}});
+  keys.insert(
+      keys.end(),
+      {{"clearance", number, "m", "0", "gap at the start; negative is penetration"},
+       {"tangential_stiffness", numbers, "N/m", "[0, 0]", "along `x` and along axis x `x`, while it is lifted too", at_least(0), {2}},
+       {"tangential_damping", numbers, "N s/m", "[0, 0]", "along `x` and along axis x `x`, while it is lifted too", at_least(0), {2}}});
   return keys;
 }
 

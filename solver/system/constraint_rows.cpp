@@ -2,6 +2,7 @@
 // Constraint rows of joints: their blocks, values, rates and reactions.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -118,6 +119,17 @@ std::string Joints::fault(const Config& q) const {
   if (found < 0) return "";
   const Joint& c = list[static_cast<size_t>(found)];
   return "joint \"" + c.name + "\" " + c.rows->fault(c.values(q));
+}
+
+std::pair<int, double> Joints::rolled(const Config& q0, const Config& q1) const {
+  std::pair<int, double> most{-1, 0};
+  for (size_t j = 0; j < size(); ++j) {
+    if (!list[j].velocity_rows) continue;
+    const auto turned = [&](const Config& q) { return Mat3(q.R[list[j].end[0].body].transpose() * q.R[list[j].end[1].body]); };
+    const double turn = std::abs(Eigen::AngleAxisd(Mat3(turned(q0).transpose() * turned(q1))).angle());
+    if (turn >= most.second) most = {static_cast<int>(j), turn};
+  }
+  return most;
 }
 
 void Joints::commit(const Config& q, const Config*) {

@@ -18,13 +18,19 @@ std::vector<Output> JointCoordinates::outputs() const {
   return out;
 }
 
-/// The angle goes on through whole turns, as long as a step turns the joint by less than half a turn.
+double JointCoordinates::Coordinates::angle(const Config& q) const {
+  const int sine = slides ? 1 : 0;
+  return turns ? turn.unwrap(geometry.value(sine, q), geometry.value(sine + 1, q)) : 0;
+}
+
+void JointCoordinates::commit(const Config& q, const Config*) {
+  for (Coordinates& c : list) c.turn.committed = c.angle(q);
+}
+
 void JointCoordinates::observe(const Sight& at) {
-  for (Coordinates& c : list) {
-    const int sine = c.slides ? 1 : 0;
-    if (c.turns) c.turn.committed = c.turn.unwrap(c.geometry.value(sine, at.q), c.geometry.value(sine + 1, at.q));
+  for (const Coordinates& c : list) {
     at.end.push_back(c.slides ? c.geometry.value(0, at.q) : 0);
-    at.end.push_back(c.turns ? c.turn.committed : 0);
+    at.end.push_back(c.angle(at.q));
   }
 }
 

@@ -8,18 +8,20 @@
 
 namespace hilo {
 
-class JointCoordinates final : public Contribution, public Observer {
+class JointCoordinates final : public Contribution, public Stateful, public Observer {
  public:
   struct Coordinates {
     std::string name;
     Connector geometry;  // measures: slide, sine and cosine, as coordinates_of says
     bool slides, turns;
-    Turn turn = {};  // angle of the last step, which the next one goes on from
+    Turn turn = {};                       // angle of the state accepted last, which the next one goes on from
+    double angle(const Config& q) const;  // through whole turns, as long as the joint turns by less than half of one since then
   };
   std::vector<Coordinates> list;
 
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
+  void commit(const Config& q, const Config* v) override;
   void observe(const Sight& at) override;
 };
 

@@ -76,6 +76,7 @@ RestReport come_to_rest(RunParts& run, State& state, const LoadLevel& under) {
   combine(way, {{0, &start}});
   double tau = first;
   bool stays = false, at_rest = false;  // the last step, where it began; the state, to its tolerance
+  bool rolls = false;                   // as far in each step as it may
   bool arrived = !system.moves();       // what moves by a law is where it is to be
   for (int k = 0; k < most && tau > least; ++k) {
     const Residual forces = forces_at_rest(run, under, state.q, state.lambda);  // by what the last step chose
@@ -106,6 +107,7 @@ RestReport come_to_rest(RunParts& run, State& state, const LoadLevel& under) {
     report.iterations = iterations += taken;
     if (report.converged) {
       report.reason = keep_at_rest(system, q, under);
+      if (report.reason.empty()) report.reason = system.rolls_too_far(state.q, q), rolls = rolls || !report.reason.empty();
       stays = system.largest_difference(q, state.q) <= 1e-6 * system.length;
       if (report.reason.empty() && !stays && arrived && work_of(system, forces, Unknown(system, state.q, q).increments(system)) > 0)
         report.reason = "a step goes against the forces";
@@ -118,14 +120,14 @@ RestReport come_to_rest(RunParts& run, State& state, const LoadLevel& under) {
         report.converged = true, report.reason.clear();
         return report;
       }
-      tau /= 4, stays = false;
+      tau /= rolls ? 1.5 : 4, stays = false;
       continue;
     }
     system.settle(true), arrived = true;
     combine(way, {{1, &q}, {-1, &state.q}});
     std::swap(state.q, q), std::swap(state.lambda, lambda);
     if (at_rest && stays) return report;
-    tau = std::min(tau * (taken <= easy ? 3 : 1.5), longest);
+    tau = std::min(tau * (rolls ? 1.15 : taken <= easy ? 3 : 1.5), longest);
   }
   if (report.converged) report.reason = fmt::format("{} steps do not end at rest", most);
   report.ends = report.converged;

@@ -24,6 +24,22 @@ TEST(Coordinate, OfARevoluteCountsTurns) {
   EXPECT_NEAR(at(at.rows() - 1, 1), 7, 1e-10);
 }
 
+// A start may be turns away from the drawing: 10 N m on 1 N m/rad, or a drive that begins at 9 rad.
+TEST(Coordinate, CountsTheTurnsOfAStart) {
+  const Case c("drives");
+  const std::string hinge = "[[joint]]\nkind = \"revolute\"\nname = \"j\"\nb = \"a\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
+  const std::string spring = "[[spring]]\nkind = \"torsion\"\nname = \"t\"\nb = \"a\"\naxis = [0, 0, 1]\nstiffness = 1\n";
+  const std::string load = "[[load]]\nkind = \"torque\"\nname = \"m\"\non = \"a\"\ntorque = [0, 0, 10]\n";
+  const std::string drive = "angle = 1\nhistory = {t = [0, 2], value = [9, 12]}\n";
+  for (const auto& [scene, first, last] : {std::tuple{hinge + spring + load + time_of + "start = \"equilibrium\"\n", 10., 10.},
+                                           std::tuple{hinge + drive + time_of, 9., 12.}}) {
+    c.write("scene.toml", body("a") + scene);
+    const auto angle = c.solved().history("coordinate/j").col(1);
+    EXPECT_NEAR(angle[0], first, 1e-8);
+    EXPECT_NEAR(angle[angle.size() - 1], last, 1e-8);
+  }
+}
+
 // A nut that is turned by three turns and more goes along by its pitch a turn; the signs are those of the axis.
 TEST(Coordinate, OfAScrewIsItsPitchATurn) {
   const Case c("drives");

@@ -130,6 +130,29 @@ TEST(Rolling, EveryMethodKeepsItsOrderOnTheCycloid) {
 }
 
 // Truth: a start that slips is projected onto rolling, J and m deciding how: w = w0 J/(J + m r^2) for a spin w0 alone.
+// A wheel of radius r that F pulls against a spring kx at its centre, and kt about its axle, comes to rest at x = F/(kx + kt/r^2), however
+// far it has rolled.  A load step of a whole turn had let it slip by three times that.
+TEST(Rolling, AtRestAWheelIsWhereItsTurnSays) {
+  const Case c("rolling");
+  c.write("scene.toml", R"(body = [{name = "w", mass = 1, com = [0, 0, 0.1], inertia = [0.01, 0.02, 0.01]}]
+joint = [{kind = "rolling", name = "c", b = "w", at = [0, 0, 0.1], axis = [0, 0, 1], x = [1, 0, 0], radius = 0.1, axle = [0, 1, 0]},
+         {kind = "planar", name = "p", b = "w", at = [0, 0, 0.1], axis = [0, 1, 0]}]
+spring = [{kind = "torsion", name = "t", b = "w", axis = [0, 1, 0], stiffness = 0.5},
+          {kind = "bushing", name = "b", b = "w", at = [0, 0, 0.1], stiffness = [20, 0, 0]}]
+load = [{kind = "force", name = "f", on = "w", force = [7, 0, 0]}]
+probe = [{name = "w", on = "w"}]
+[time]
+end = 1e-4
+step = 1e-4
+)");
+  for (const char* analysis : {"--set 'time.analysis=\"static\"' ", "--set 'time.start=\"equilibrium\"' "})
+    for (const double F : {1., 7., 28., 60.}) {
+      const Results r = c.solved(analysis + fmt::format("--set load.f.force=[{},0,0]", F));
+      const auto x = r.history("probe/w");
+      EXPECT_NEAR(x(x.rows() - 1, 0) / (F / 70), 1, 6e-4) << analysis << F;
+    }
+}
+
 TEST(Rolling, StartThatSlipsIsMadeToRoll) {
   const Case c("rolling");
   const Ran ran = c.solve("--quiet", "run.h5", 0, "slipping");
