@@ -252,6 +252,8 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   m.deck_scene = (in.cases.empty() ? in.scene : in.cases.front().scene).text();
   for (size_t r = 0; r < m.region_name.size(); ++r) {
     auto& data = m.region_data[r];
+  if (options.order == 2) raise_order(in, factor);
+  add_placed_sets(in, options.sets);
     data.density *= to_si("kg/m^3", options.units);
     data.E *= to_si("Pa", options.units);
     if (data.density < 0.05 || data.density > 5e4)

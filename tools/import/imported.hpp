@@ -211,8 +211,10 @@ Imported read_any(const std::string& path, const ImportOptions& options, const R
 /// What follows every reader: nodes merged, unused nodes dropped, order raised, sets by place, lengths brought to SI; then the checks
 /// (inverted, degenerate; slivers are told).
 void finish(Imported& in, const std::string& file, const ImportOptions& options);
-/// tet4, wedge6, hex8 to tet10, wedge15, hex20r with straight edges.
-void raise_order(Imported& in);
+/// tet4, wedge6, hex8 to tet10, wedge15, hex20r with straight edges; `metres`: of a unit of the mesh.
+void raise_order(Imported& in, double metres);
+/// The last nodes of the mesh are in the middle between these: the scene holds each in what it holds both ends in.
+void hold_middles(Imported& in, const std::vector<std::array<std::int64_t, 2>>& ends, double metres);
 /// Curved cells that are inverted get straight edges, and those their neighbours become inverted by; returns how many.
 std::int64_t straighten(Mesh& mesh);
 /// Nodes nearer than `distance` become one; returns how many went.

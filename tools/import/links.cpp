@@ -70,15 +70,16 @@ void hold_body(SceneWriter& scene, const std::string& name, unsigned components,
   joints_that_hold(scene, components, axes, name + "_support", to, name, at, place);
 }
 
-void hold_set(SceneWriter& scene, const std::string& set, unsigned components, const SceneValue& displacement, const std::string& history,
-              const std::string& place) {
+void hold_set(SceneWriter& scene, const std::string& set, unsigned components, const std::optional<Vec3>& displacement,
+              const std::string& history, const std::string& place) {
   std::vector<std::string> along;
   for (size_t k = 0; k < 3; ++k)
     if (components >> k & 1) along.emplace_back(1, "xyz"[k]);
   scene
-      .add_unique({"motion", displacement.given() ? "translation" : "fixed"}, set, place,
-                  {{"on", set}, {"components", along}, {"displacement", displacement}})
-      .set_if(displacement.given(), "history", history);
+      .add_unique({"motion", displacement ? "translation" : "fixed"}, set, place,
+                  {{"on", set}, {"components", along}, {"displacement", displacement ? SceneValue(*displacement) : SceneValue()}})
+      .set_if(displacement.has_value(), "history", history);
+  scene.supports.push_back({set, place, history, components, displacement.value_or(Vec3::Zero())});
 }
 
 void motion_of_body(SceneWriter& scene, const std::string& name, const std::string& on, const Prescribed& by, const Vec3& at,
@@ -173,6 +174,7 @@ void joints_of_sum(SceneWriter& scene, const std::vector<SumTerm>& terms, const 
 void joint_to_slide(SceneWriter& scene, const std::string& name, const std::string& body, const std::string& node, const Vec3& axis,
                     const Vec3& at, const std::string& place) {
   scene.add_unique({"joint", "in-plane"}, name, place, {{"a", body}, {"b", node}, {"at", at}, {"axis", axis}});
+  if (body.empty()) scene.supports.push_back({node, place, "", 0, Vec3::Zero(), axis});
 }
 
 }  // namespace hilo

@@ -27,8 +27,8 @@ struct Prescribed {
 void motion_of_body(SceneWriter& scene, const std::string& name, const std::string& on, const Prescribed& by, const Vec3& at,
                     const std::string& history, const std::string& place);
 /// Nodes of a set that are held along some of x, y, z (bits), or moved by this.
-void hold_set(SceneWriter& scene, const std::string& set, unsigned components, const SceneValue& displacement, const std::string& history,
-              const std::string& place);
+void hold_set(SceneWriter& scene, const std::string& set, unsigned components, const std::optional<Vec3>& displacement,
+              const std::string& history, const std::string& place);
 /// A body at `at` whose components along `axes` are held or go this way: whole, or by joints to the ground or to a body that goes so.
 void hold_body(SceneWriter& scene, const std::string& name, unsigned components, const Mat3& axes, const Prescribed& by, const Vec3& at,
                const std::string& history, const std::string& place);

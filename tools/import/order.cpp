@@ -46,7 +46,7 @@ struct EdgeHash {
 
 }  // namespace
 
-void raise_order(Imported& in) {
+void raise_order(Imported& in, double metres) {
   Mesh& m = in.mesh;
   std::unordered_map<std::pair<std::int64_t, std::int64_t>, std::int64_t, EdgeHash> middle;
   const auto ends = [](std::int64_t a, std::int64_t b) { return std::pair(std::min(a, b), std::max(a, b)); };
@@ -89,6 +89,7 @@ void raise_order(Imported& in) {
     for (size_t i = 0; i < ends_of.size(); ++i)
       if (inside[ends_of[i][0]] && inside[ends_of[i][1]]) set.push_back(n_linear + static_cast<std::int64_t>(i));
   }
+  hold_middles(in, ends_of, metres);
   if (m.n_nodes() > n_linear)
     in.notes.push_back(fmt::format("order 2: {} nodes in the middle of edges; node sets that hold both ends of an edge hold it too",
                                    m.n_nodes() - n_linear));

@@ -61,6 +61,13 @@ struct SceneKind {
   std::string_view section, kind;
 };
 
+/// What holds or moves the nodes of a set: along x, y and z (bits), or none of them and an axis.
+struct SceneSupport {
+  std::string set, place, history;
+  unsigned components = 0;
+  Vec3 by = Vec3::Zero(), axis = Vec3::Zero();
+};
+
 /// A table of a scene: [[joint]], [material.NAME], or [time], whose name is "".  A kind or key that the schema does not have, and a value
 /// of another type, is a fault of ours.
 class SceneTable {
@@ -116,3 +123,5 @@ class SceneWriter {
 };
 
 }  // namespace hilo
+  std::vector<SceneSupport> supports;  // of those that the tables say
+

@@ -262,8 +262,7 @@ void BdfScene::supports() {
     if (moves) add(moved[{moves, by}]);
   }
   for (const auto& [bits, g] : fixed) hold_set(scene_, set_of(g.rows, "support"), bits, {}, "", g.place);
-  for (const auto& [key, g] : moved)
-    hold_set(scene_, set_of(g.rows, "moved"), key.first, Vec3(Vec3(key.second.data()) * si("m")), "", g.place);
+  for (const auto& [key, g] : moved) hold_set(scene_, set_of(g.rows, "moved"), key.first, point(Vec3(key.second.data())), "", g.place);
   for (const Askew& h : askew) {
     const std::string node = node_set(h.row);
     joint_to_slide(scene_, node + "_support", "", node, h.axis, point(X(h.row)), h.place);

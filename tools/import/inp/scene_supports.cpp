@@ -24,7 +24,7 @@ void InpScene::hold(const Held& h) {
   if (!past) return;
   unsigned bits = 0;
   for (int k = 0; k < 3; ++k) bits |= static_cast<unsigned>(h.on[k]) << k;
-  hold_set(scene_, set_of(h.target, h.nodes, "support", false), bits, h.moved ? SceneValue(h.value * si("m")) : SceneValue(), *past,
+  hold_set(scene_, set_of(h.target, h.nodes, "support", false), bits, h.moved ? std::optional<Vec3>(point(h.value)) : std::nullopt, *past,
            h.place);
 }
 
