@@ -20,9 +20,14 @@ BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const Imp
   for (const auto& s : deck.shells) shell_.try_emplace(s.id, &s);
   Eigen::AlignedBox3d box;
   for (const auto a : in.mesh.nodes) box.extend(X(a));
-  for (const auto& b : deck.beams)
-    for (const auto grid : b.nodes) box.extend(X(row(grid, b.place, b.card)));
-  size_ = box.diagonal().norm();
+  const auto add = [&](std::int64_t grid) {
+    if (const auto a = deck.row.find(grid); a != deck.row.end()) box.extend(X(a->second));
+  };
+  for (const auto& b : deck.beams) std::ranges::for_each(b.nodes, add);
+  for (const auto& r : deck.rigid) add(r.hub), std::ranges::for_each(r.grids, add);
+  for (const auto& s : deck.springs) std::ranges::for_each(s.grids, add);
+  for (const auto& m : deck.masses) add(m.grid);
+  if (!box.isEmpty() && box.diagonal().norm() > 0) size_ = box.diagonal().norm();
   for (std::int64_t c = 0; c < in.mesh.n_cells() && in.sheets; ++c)
     if (info(in.mesh.shape[c]).dimension != 2) of_solids_.insert(in.mesh.cell(c).begin(), in.mesh.cell(c).end());
 }

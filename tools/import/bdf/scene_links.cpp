@@ -211,11 +211,12 @@ void BdfScene::bodies() {
     const auto it = sums.find(a);
     const Sum s = it == sums.end() ? Sum{} : it->second;
     const Vec3 arm = s.mass > 0 ? Vec3(s.first / s.mass) : Vec3(Vec3::Zero());
-    const Mat3 J = s.inertia - s.mass * about(arm);
+    Mat3 J = s.inertia - s.mass * about(arm);
+    J = (J.array().abs() > 1e-12 * s.inertia.norm()).select(J, 0);  // the rest is rounding
     const double i = si("kg m^2");
     SceneTable& body = scene_.add("body", end_name(a), place, {{"mass", s.mass * si("kg")}, {"com", point(X(a) + arm)}});
     const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(J).eigenvalues();
-    const bool of_no_body = moments[0] < 0 || moments[2] > (moments[0] + moments[1]) * (1 + 1e-9);
+    const bool of_no_body = moments[0] < -1e-9 * moments[2] || moments[2] > (moments[0] + moments[1]) * (1 + 1e-9);
     if (of_no_body && (deck_.chosen.is_static() || deck_.chosen.buckles()))
       in_.notes.push_back(fmt::format("{}: no body has the inertia of this CONM2: it is left out, as it counts in no static run", place));
     else if (J.norm() > 0)
