@@ -16,6 +16,32 @@
 namespace hilo {
 namespace {
 
+/// A listed set in which nodes become one: the deck's force acts on each as often as it has them, so that further sets have those that
+/// come twice, three times ...
+void repeat_merged(Imported& in, const std::vector<std::int64_t>& row) {
+  SetNames names(in);
+  const std::set<std::string> listed = in.as_listed;
+  for (const std::string& name : listed) {
+    const auto set = in.mesh.node_sets.find(name);
+    if (set == in.mesh.node_sets.end()) continue;
+    std::map<std::int64_t, size_t> times;
+    std::vector<std::vector<std::int64_t>> sets;  // of the second time on
+    for (const auto a : set->second)
+      if (const size_t n = ++times[row[static_cast<size_t>(a)]]; n > 1) {
+        sets.resize(std::max(sets.size(), n - 1));
+        sets[n - 2].push_back(a);
+      }
+    if (sets.empty()) continue;
+    std::vector<std::pair<std::string, size_t>> all{{name, times.size()}};
+    for (size_t k = 0; k < sets.size(); ++k) {
+      all.emplace_back(names.nodes(fmt::format("{}_{}_times", name, k + 2), sets[k]), sets[k].size());
+      in.as_listed.insert(all.back().first);
+    }
+    in.scene.repeat(all);
+    for (DeckCase& c : in.cases) c.scene.repeat(all);
+  }
+}
+
 /// Rows of nodes move to `row`; -1 takes them out of the sets.
 void renumber(Imported& in, const std::vector<std::int64_t>& row, std::int64_t n) {
   Mesh& m = in.mesh;
@@ -79,7 +105,7 @@ std::int64_t merge_nodes(Imported& in, double distance) {
   std::vector<std::int64_t> row(n);
   std::int64_t kept = 0;
   for (std::int64_t a = 0; a < n; ++a) row[a] = nodes.root(a) == a ? kept++ : row[nodes.root(a)];  // a root comes before its members
-  if (kept < n) renumber(in, row, kept);
+  if (kept < n) repeat_merged(in, row), renumber(in, row, kept);
   return n - kept;
 }
 
@@ -225,9 +251,9 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   if (!options.thickness.empty() || (options.thicken && !in.thin.empty())) thicken(in, file);
   if (options.flip || is_mirrored(m))
     in.notes.push_back(fmt::format("{} of {} cells were numbered as in a mirror: turned", flip(m), m.n_cells()));
-  if (options.order == 2) raise_order(in);
-  add_placed_sets(in, options.sets);
   const double factor = options.scale * in.metre.value_or(to_si("m", options.units));
+  if (options.order == 2) raise_order(in, factor);
+  add_placed_sets(in, options.sets);
   for (auto* points : {&m.X, &m.block_at})
     for (auto& x : *points) x *= factor;
   if (!m.block.empty()) m.block.resize(m.X.size(), -1);
@@ -252,8 +278,6 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   m.deck_scene = (in.cases.empty() ? in.scene : in.cases.front().scene).text();
   for (size_t r = 0; r < m.region_name.size(); ++r) {
     auto& data = m.region_data[r];
-  if (options.order == 2) raise_order(in, factor);
-  add_placed_sets(in, options.sets);
     data.density *= to_si("kg/m^3", options.units);
     data.E *= to_si("Pa", options.units);
     if (data.density < 0.05 || data.density > 5e4)

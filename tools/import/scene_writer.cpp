@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "model/scene.hpp"
 
@@ -69,6 +70,28 @@ SceneTable& SceneTable::comment(const std::string& line) {
   return *this;
 }
 
+size_t SceneTable::value_at(std::string_view key) const {
+  const std::string begins = fmt::format("\n{} = ", key);
+  const size_t at = text_.find(begins);
+  return at == text_.npos ? at : at + begins.size();
+}
+
+double SceneTable::number(std::string_view key) const {
+  const size_t at = value_at(key);
+  return at == text_.npos ? 0 : std::strtod(&text_[at], nullptr);
+}
+
+SceneTable SceneTable::with(std::initializer_list<SceneKey> keys) const {
+  SceneTable out = *this;
+  for (const auto& [key, value] : keys) {
+    const size_t from = out.value_at(key);
+    if (from == text_.npos) fault(fmt::format("{} has no {}", schema_->section, key));
+    out.text_.replace(from, out.text_.find('\n', from) - from, value.toml_);
+    if (key == "on") out.ends_ = value.texts_;
+  }
+  return out;
+}
+
 bool SceneTable::is(std::string_view section) const { return schema_ && schema_->section == section; }
 
 void SceneWriter::begin(const std::string& title, const SceneValue& gravity) {
@@ -80,6 +103,25 @@ std::string SceneWriter::unique(std::string_view section, const std::string& wis
   std::string name = wish;
   for (int i = 2; !take(section, name); ++i) name = fmt::format("{}_{}", wish, i);
   return name;
+}
+
+void SceneWriter::repeat(const std::vector<std::pair<std::string, size_t>>& sets) {
+  double all = 0;
+  for (const auto& [set, n] : sets) all += static_cast<double>(n);
+  const size_t before = items_.size();
+  for (size_t i = 0; i < before; ++i) {
+    const SceneTable table = items_[i];
+    const bool mass = table.is("point_mass");
+    if (std::ranges::count(table.ends(), sets.front().first) == 0 || (!mass && !table.is("load"))) continue;
+    const auto share = [&](SceneTable of, size_t n) {
+      return mass ? of.with({{"mass", table.number("mass") * static_cast<double>(n) / all}}) : of;
+    };
+    items_[i] = share(table, sets.front().second);
+    for (size_t k = 1; k < sets.size(); ++k) {
+      const auto& [set, n] = sets[k];
+      items_.push_back(share(table.with({{"name", unique(mass ? "point_mass" : "load", set)}, {"on", set}}), n));
+    }
+  }
 }
 
 bool SceneWriter::take(std::string_view section, const std::string& name) {

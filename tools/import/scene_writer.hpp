@@ -79,12 +79,18 @@ class SceneTable {
   SceneTable& set_if(bool given, std::string_view key, const SceneValue& value) { return given ? set(key, value) : *this; }
   SceneTable& comment(const std::string& line);
 
+  /// The same with other values of keys that it has.
+  SceneTable with(std::initializer_list<SceneKey> keys) const;
+  /// A number that it has, or 0.
+  double number(std::string_view key) const;
+
   bool is(std::string_view section) const;
   /// What it acts on, or is between: the texts of its keys on, a and b.
   const std::vector<std::string>& ends() const { return ends_; }
   const std::string& text() const { return text_; }
 
  private:
+  size_t value_at(std::string_view key) const;
   const KindSchema* schema_ = nullptr;  // of a comment: null
   std::string text_;
   std::vector<std::string> ends_;
@@ -108,6 +114,8 @@ class SceneWriter {
   void comment(const std::string& lines) { items_.emplace_back(lines + '\n'); }
   /// A name in a section that no other has been given: the wish, or with _2, _3 ... behind it.
   std::string unique(std::string_view section, const std::string& wish);
+  /// A force on each node of `sets.front()`, and a mass that these share, act once more on those of each further set, of so many nodes.
+  void repeat(const std::vector<std::pair<std::string, size_t>>& sets);
   /// False where another has it.
   bool take(std::string_view section, const std::string& name);
 
@@ -117,11 +125,11 @@ class SceneWriter {
   std::set<std::string> ends(std::initializer_list<std::string_view> sections) const;
   std::string text() const;
 
+  std::vector<SceneSupport> supports;  // of those that the tables say
+
  private:
   std::vector<SceneTable> items_;
   std::set<std::string> given_;  // "section/name"
 };
 
 }  // namespace hilo
-  std::vector<SceneSupport> supports;  // of those that the tables say
-

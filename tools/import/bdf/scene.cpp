@@ -58,7 +58,7 @@ SceneWriter BdfScene::write() {
 
 std::string BdfScene::set_of(Rows nodes, const std::string& wish, bool listed) {
   sort_unique(nodes);
-  const bool apart = listed && (options_.order == 2 || (options_.thicken && is_divided(in_)));
+  const bool apart = listed && (options_.order == 2 || options_.merge || (options_.thicken && is_divided(in_)));
   if (set_by_rows_.empty())
     for (const auto& [name, set] : in_.mesh.node_sets) {
       Rows of_cells;

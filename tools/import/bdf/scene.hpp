@@ -81,7 +81,7 @@ class BdfScene {
 
   double si(const char* unit) const { return options_.si(unit); }
   Vec3 point(const Vec3& x) const { return options_.point(x); }
-  /// The set of just these nodes: one that is there, or a new one.  `listed`: --order 2 must not complete it.
+  /// The set of just these nodes: one that is there, or a new one.  `listed`: each of its nodes counts.
   std::string set_of(Rows nodes, const std::string& wish, bool listed = false);
   std::string node_set(std::int64_t row) { return set_of({row}, fmt::format("node_{}", deck_.node_id[static_cast<size_t>(row)]), true); }
   /// Row of a grid; an Error where it is not there.

@@ -49,7 +49,7 @@ SceneWriter InpScene::write() {
 std::string InpScene::set_of(const std::string& target, Rows nodes, const std::string& wish, bool each) {
   sort_unique(nodes);
   const bool as_listed =
-      each && (o_.order == 2 || (o_.thicken && is_divided(in_)));  // a force per node stays on the nodes it was given for
+      each && (o_.order == 2 || o_.merge || (o_.thicken && is_divided(in_)));  // a force per node stays on the nodes it was given for
   if (!target.empty() && !as_listed) {
     const auto& name = node_set_.at(target);
     if (!name.empty() && in_.mesh.nodes_of(name, name) == nodes) return name;
