@@ -65,7 +65,7 @@ std::vector<Facet> match_facets(const Mesh& mesh, const std::vector<std::vector<
       const auto hit = index.find(key_of(nodes, n));
       if (hit == index.end()) continue;
       for (const size_t i : hit->second)
-        if (found[i].cell < 0 || same_turn(faces[i], nodes, n)) found[i] = {c, static_cast<std::int64_t>(f)};
+        if (found[i].cell < 0 || same_turn(faces[i], nodes, n) != is_mirrored(mesh, c)) found[i] = {c, static_cast<std::int64_t>(f)};
     }
   return found;
 }

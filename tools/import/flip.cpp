@@ -20,11 +20,13 @@ const Turned& turned(int n_corners) {
 
 }  // namespace
 
+bool is_mirrored(const Mesh& m, std::int64_t cell) { return info(m.shape[cell]).dimension == 3 && quality(m, cell).volume < 0; }
+
 std::int64_t flip(Mesh& m) {
   std::vector<char> flipped(m.shape.size(), 0);
   std::int64_t count = 0;
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
-    if (info(m.shape[c]).dimension != 3 || !(quality(m, c).volume < 0)) continue;
+    if (!is_mirrored(m, c)) continue;
     const std::vector<std::int64_t> old(m.cell(c).begin(), m.cell(c).end());
     for (size_t i = 0; i < old.size(); ++i)
       m.nodes[static_cast<size_t>(m.offset[c]) + i] = old[static_cast<size_t>(turned(info(m.shape[c]).n_corners).node[i])];

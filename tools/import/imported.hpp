@@ -232,6 +232,8 @@ void replace_cells(Mesh& mesh, Mesh&& cells);
 std::int64_t drop_unused(Imported& in);
 /// Adds the sets of --set, by the words and the code of [set.NAME] of scenes; lengths are still in the unit of the file.
 void add_placed_sets(Imported& in, const std::vector<std::string>& sets);
+/// Whether a solid cell has a negative volume: its facets look inwards.
+bool is_mirrored(const Mesh& mesh, std::int64_t cell);
 /// Cells of negative volume are numbered the other way round, in sets of facets too; returns how many.
 std::int64_t flip(Mesh& mesh);
 /// Throws Error naming the cells when any is inverted or has no volume.

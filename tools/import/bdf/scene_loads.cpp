@@ -349,7 +349,7 @@ void BdfScene::pressures() {
     p.f = found[i];
     if (p.f.cell < 0) continue;
     const Vec3 normal = c.size() == 3 ? (X(c[1]) - X(c[0])).cross(X(c[2]) - X(c[0])) : (X(c[2]) - X(c[0])).cross(X(c[3]) - X(c[1]));
-    p.sign = normal.dot(facet_area(in_.mesh, p.f)) > 0 ? -1 : 1;
+    p.sign = (normal.dot(facet_area(in_.mesh, p.f)) > 0) == is_mirrored(in_.mesh, p.f.cell) ? 1 : -1;
   }
 
   using Key = std::pair<std::int64_t, std::int64_t>;

@@ -248,7 +248,8 @@ std::optional<Vec3> normal_of(const Mesh& mesh, const std::vector<Facet>& facets
     const auto cell = mesh.cell(f.cell);
     const auto X = [&](int a) { return mesh.X[static_cast<size_t>(cell[static_cast<size_t>(a)])]; };
     const ShapeInfo& shape = info(mesh.shape[static_cast<size_t>(f.cell)]);
-    const Vec3 area = shape.dimension == 2 ? Vec3((X(1) - X(0)).cross(X(2) - X(0))) : facet_area(mesh, f), n = area.normalized();
+    const Vec3 area = shape.dimension == 2 ? Vec3((X(1) - X(0)).cross(X(2) - X(0))) : facet_area(mesh, f),
+               n = (is_mirrored(mesh, f.cell) ? -1 : 1) * area.normalized();
     if (out && !((n - *out).norm() < 1e-6)) return std::nullopt;
     out = n;
   }
