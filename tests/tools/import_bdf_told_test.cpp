@@ -133,6 +133,22 @@ TEST_F(ImportBdfTold, AMomentOnAMeanKeepsItsSizeUnderScale) {
   }
 }
 
+// Skin that is there to be pressed on has no PSHELL; one of a structure adds stiffness and mass to the solids.
+TEST_F(ImportBdfTold, ShellsOfAStructureOnSolidsAreToldAsLeftOut) {
+  const std::string skin = head + cube + foot + force + "CQUAD4,50,9,5,6,7,8\n";
+  told(skin + "PSHELL,9,1,.05,1\n", "CQUAD4 of a PSHELL or PCOMP on faces of solids: stiffness and mass (1,");
+  scene(skin);
+  EXPECT_EQ(err.find("not read"), std::string::npos) << err;
+}
+
+TEST_F(ImportBdfTold, ModesFromAFrequencyOnAreTold) {
+  const std::string modes = "SOL 103\nCEND\nSPC = 1\nMETHOD = 4\nBEGIN BULK\n" + cube + foot;
+  told(modes + "EIGRL,4,60.,,2\n", "EIGRL from a frequency (the lowest modes are looked for) (1,");
+  told(modes + "EIGR,4,LAN,60.,,,2\n", "EIGR from a frequency (the lowest modes are looked for) (1,");
+  scene(modes + "EIGRL,4,-1.,,2\n");
+  EXPECT_EQ(err.find("not read"), std::string::npos) << err;
+}
+
 // m a^2 of two masses that stand apart; their own inertia is that of the deck.
 TEST_F(ImportBdfTold, MassesApartOnAGridHaveTheInertiaOfTheScaledGeometry) {
   const std::string text = head + cube + foot + "GRID,100,,1.,.5,.5\nRBE2,60,100,123456,2,3,6,7\nCONM2,70,100,,3.,0.,2.,0.\n" +

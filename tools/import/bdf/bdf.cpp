@@ -109,6 +109,8 @@ void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine
   for (size_t i = 0; i < deck.shells.size(); ++i) {
     const auto& s = deck.shells[i];
     if (!apart.contains(s.property)) {
+      if (deck.thin.contains(s.property))
+        in.skip(fmt::format("{} of a PSHELL or PCOMP on faces of solids: stiffness and mass", s.card), s.place);
       facets[s.property].push_back(found[i]);
       continue;
     }

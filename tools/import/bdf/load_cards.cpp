@@ -133,6 +133,7 @@ void read_modes(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   const size_t field = d.name == "EIGRL" ? 3 : 5, band = d.name == "EIGRL" ? 2 : 3;
   d.ignore_rest();  // how they are found and scaled
   const auto n = d.integer(field, 0);
+  if (d.number(band - 1) > 0) in.skip(d.name + " from a frequency (the lowest modes are looked for)", d.place(band - 1));
   if (n == 0 && !d.empty(band)) in.skip(d.name + " up to a frequency", d.place(band));
   deck.modes[d.integer(0)] = static_cast<int>(std::min<std::int64_t>(std::max<std::int64_t>(n, 0), 1000));
 }

@@ -22,6 +22,7 @@ void add(BdfDeck& deck, BdfDeck::Thin c, std::vector<BdfDeck::Thin>& to) {
 template <size_t corners, size_t middles, size_t offset, size_t thickness, size_t flag>
 void read_shell(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   BdfDeck::Thin s{{corners == 3 ? tri3 : quad4, d.integer(0), d.integer(1, d.integer(0)), {}, d.place(0)}};
+  s.card = d.name;
   for (size_t i = 0; i < corners; ++i) s.nodes.push_back(d.integer(2 + i));
   size_t there = 0;
   for (size_t i = 0; i < middles; ++i) there += !d.empty(2 + corners + i);
