@@ -95,8 +95,8 @@ void motion_of_body(SceneWriter& scene, const std::string& name, const std::stri
               {{"on", on}, {"at", at}, {"axis", by.turn.normalized()}, {"angle", by.turn.norm()}, {"history", history}});
 }
 
-std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, const std::vector<double>& w, const Vec3& at, const Vec3& F,
-                                                const Vec3& M) {
+std::optional<MeanShares> shares_of_mean(const std::vector<Vec3>& X, const std::vector<double>& w, const Vec3& at, const Vec3& F,
+                                         const Vec3& M, const std::vector<double>& v) {
   double W = 0;
   Vec3 c = Vec3::Zero();
   for (size_t a = 0; a < X.size(); ++a) W += w[a], c += w[a] * X[a];
@@ -107,15 +107,15 @@ std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, cons
     const Vec3 r = X[a] - c;
     T += w[a] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
   }
+  for (const double of_turn : v) T += of_turn * Mat3::Identity();
   const Vec3 moment = M + (at - c).cross(F);
-  Vec3 turn = Vec3::Zero();
+  MeanShares out;
   if (moment.norm() > 1e-12 * (M.norm() + (at - c).norm() * F.norm())) {
-    turn = T.completeOrthogonalDecomposition().solve(moment);
-    if (!((T * turn - moment).norm() < 1e-9 * moment.norm())) return std::nullopt;
+    out.turn = T.completeOrthogonalDecomposition().solve(moment);
+    if (!((T * out.turn - moment).norm() < 1e-9 * moment.norm())) return std::nullopt;
   }
-  std::vector<Vec3> f;
-  for (size_t a = 0; a < X.size(); ++a) f.push_back(w[a] * (F / W + turn.cross(X[a] - c)));
-  return f;
+  for (size_t a = 0; a < X.size(); ++a) out.forces.push_back(w[a] * (F / W + out.turn.cross(X[a] - c)));
+  return out;
 }
 
 namespace {

@@ -34,9 +34,14 @@ void hold_body(SceneWriter& scene, const std::string& name, unsigned components,
                const std::string& history, const std::string& place);
 
 /// What a weighted mean of points makes of a force and a moment at a point of it: f = w (F/W + (T^-1 (M + (x - c) x F)) x r), with r from
-/// the weighted mean c, W = sum w and T = sum w (r.r I - r r^T).  Nothing where the points cannot carry the moment.
-std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, const std::vector<double>& w, const Vec3& at, const Vec3& F,
-                                                const Vec3& M);
+/// the weighted mean c, W = sum w and T = sum w (r.r I - r r^T) + sum v, where v are weights of the turns of points: the moment on each is
+/// v times `turn`.  Nothing where the points cannot carry the moment.
+struct MeanShares {
+  std::vector<Vec3> forces;
+  Vec3 turn = Vec3::Zero();
+};
+std::optional<MeanShares> shares_of_mean(const std::vector<Vec3>& X, const std::vector<double>& w, const Vec3& at, const Vec3& F,
+                                         const Vec3& M, const std::vector<double>& v = {});
 
 /// A term of a sum of displacements that is zero: what moves, at which point, and its axis times its factor.
 struct SumTerm {

@@ -85,7 +85,12 @@ struct BdfRigid {
 struct BdfMean {
   std::int64_t id, grid;
   unsigned components;
-  std::vector<std::pair<std::int64_t, double>> of;  // grid, weight
+  struct Of {
+    std::int64_t grid;
+    double weight;
+    bool turns;  // its turns count too
+  };
+  std::vector<Of> of;
   std::string not_read, place;
 };
 /// CONM2: offset from the grid and inertia about the centre of mass, in `system`; -1: the offset is the point itself.

@@ -63,10 +63,11 @@ void read_rbe3(const BdfEntry& d, BdfDeck& deck, Imported& in) {
     }
     const double weight = d.number(i);
     if (!(weight >= 0)) throw Error(d.place(i), fmt::format("RBE3 {}: a weight of {:g}", m.id, weight));
-    if (const unsigned c = components(d, i + 1); (c & 7) != 7) m.not_read = fmt::format("RBE3 of components {}", d.text(i + 1));
+    const unsigned c = components(d, i + 1);
+    if (c != 7 && c != 63) m.not_read = fmt::format("RBE3 of components {}", d.text(i + 1));
     std::vector<std::int64_t> grids;
     i = grid_list(d, i + 2, grids);
-    for (const auto g : grids) m.of.emplace_back(g, weight);
+    for (const auto g : grids) m.of.push_back({g, weight, c == 63});
   }
   if (m.of.empty()) throw Error(d.place(), fmt::format("RBE3 {} names no grids", m.id));
   deck.means.push_back(std::move(m));

@@ -189,10 +189,10 @@ void BdfScene::bodies() {
     const auto mean = mean_.find(a);
     if (mean == mean_.end()) return void(on_node[a] += m.mass);
     double most = 0, least = 1e300;
-    for (const auto& [grid, w] : mean->second->of) most = std::max(most, w), least = std::min(least, w);
+    for (const auto& of : mean->second->of) most = std::max(most, of.weight), least = std::min(least, of.weight);
     Rows rows;
-    for (const auto& [grid, w] : mean->second->of)
-      if (const auto b = row(grid, m.place, "RBE3"); end(b) == End::node) rows.push_back(b);
+    for (const auto& of : mean->second->of)
+      if (const auto b = row(of.grid, m.place, "RBE3"); end(b) == End::node) rows.push_back(b);
     if (most != least || rows.size() != mean->second->of.size()) return in_.skip("CONM2 on an RBE3 of several weights", m.place);
     Vec3 centre = Vec3::Zero();
     for (const auto b : rows) centre += X(b) / static_cast<double>(rows.size());

@@ -149,12 +149,29 @@ void BdfScene::rotation_of_bodies() {
 }
 
 void BdfScene::distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const std::string& place) {
+  const Vec3 at = X(row(m.grid, m.place, "RBE3"));
+  std::vector<std::int64_t> rows;
   std::vector<Vec3> points;
-  std::vector<double> weights;
-  for (const auto& [grid, w] : m.of) points.push_back(X(row(grid, m.place, "RBE3"))), weights.push_back(w);
-  const auto shares = shares_of_mean(points, weights, X(row(m.grid, m.place, "RBE3")), F, M / options_.scale);
+  std::vector<double> weights, of_turns;
+  double mean = 0;  // of the distances
+  for (const auto& of : m.of) {
+    rows.push_back(row(of.grid, m.place, "RBE3")), points.push_back(X(rows.back())), weights.push_back(of.weight);
+    mean += (points.back() - at).norm() / static_cast<double>(m.of.size());
+  }
+  bool solids = false;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    of_turns.push_back(m.of[i].turns && end(rows[i]) == End::body ? weights[i] * mean * mean : 0);
+    solids = solids || (m.of[i].turns && end(rows[i]) == End::node && !is_of_shell(rows[i]));
+    if (m.of[i].turns && is_of_shell(rows[i]) && end(rows[i]) == End::node)
+      in_.skip("RBE3 of 123456 at grids of shells: the share of their turns", m.place);
+  }
+  if (solids) in_.notes.push_back(fmt::format("{}: RBE3 of 123456: nodes of solids do not turn, they take forces alone", m.place));
+  const auto shares = shares_of_mean(points, weights, at, F, M / options_.scale, of_turns);
   if (!shares) return in_.skip("load on an RBE3 that its grids cannot carry", place);
-  for (size_t i = 0; i < points.size(); ++i) force_[row(m.of[i].first, m.place, "RBE3")].add((*shares)[i], place);
+  for (size_t i = 0; i < points.size(); ++i) {
+    force_[rows[i]].add(shares->forces[i], place);
+    if (of_turns[i] > 0) moment_[rows[i]].add(options_.scale * of_turns[i] * shares->turn, place);
+  }
 }
 
 /// A pressure that varies evenly over a shell, as forces of its grids: the integrals of N_a p over the element as drawn.

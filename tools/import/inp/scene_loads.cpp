@@ -206,11 +206,11 @@ void InpScene::forces_of_ties() {
       continue;
     }
     for (size_t i = 0; i < rows.size(); ++i)
-      if ((*shares)[i].norm() > 0) {
+      if (shares->forces[i].norm() > 0) {
         const auto n = static_cast<double>(by_number_of_nodes({rows[i]}).begin()->first);
         const std::string set = set_of("", {rows[i]}, "share", true);
         scene_.add_unique({"load", "force"}, set, s.place,
-                          {{"on", set}, {"force", (*shares)[i] * si("N") / n}, {"per_node", true}, {"history", *past}});
+                          {{"on", set}, {"force", shares->forces[i] * si("N") / n}, {"per_node", true}, {"history", *past}});
       }
   }
 }
