@@ -127,15 +127,16 @@ TEST_F(ImportGmsh, UnvKeepsGroupsShapesAndMiddles) {
       EXPECT_EQ(m.region_name[0], "left") << where;
       EXPECT_NEAR(volume(m), 2, 1e-12) << where;
       EXPECT_LT((vector_area(m, m.facet_sets.at("inlet")) - Vec3(-1, 0, 0)).norm(), 1e-12) << where;
-      EXPECT_TRUE(m.node_sets.count("edge")) << where;
+      ASSERT_TRUE(m.node_sets.count("edge")) << where;
+      EXPECT_EQ(m.node_sets.at("edge").size(), order == 1 ? 3u : 5u) << where << ": the nodes in the middle too";
       expect_middles(m, where);
       EXPECT_NE(err.find("group \"corner\": 1 of its numbers are no element"), std::string::npos) << "gmsh names points it does not write\n"
                                                                                                   << err;
     }
 }
 
-// Parabolic beams (22, and 24) are lines on an edge of the cell: their corner nodes are the set, and the middle is passed over.
-TEST_F(ImportGmsh, LinesOfThreeNodesOfAUniversalFileAreTheirCorners) {
+// Parabolic beams (22, and 24) are lines on an edge of the cell: where that is linear, their corner nodes are the set.
+TEST_F(ImportGmsh, LinesOfThreeNodesOfAUniversalFileOnLinearCellsAreTheirCorners) {
   std::string nodes;
   const int y[] = {0, 0, 1, 1}, x[] = {0, 1, 1, 0};
   for (int a = 0; a < 8; ++a) nodes += fmt::format("{} 1 1 11\n{} {} {}\n", a + 1, x[a % 4], y[a % 4], a / 4);

@@ -27,16 +27,20 @@ struct ExodusKind {
   std::vector<int> p;
 };
 const ExodusKind* exodus_kind(const std::string& topology, std::int64_t n_nodes) {
-  static const std::vector<int> line{0, 1}, tri{0, 1, 2}, quad{0, 1, 2, 3};
+  static const std::vector<int> line{0, 1}, line3{0, 1, 2}, tri{0, 1, 2}, quad{0, 1, 2, 3};
   // edges upwards come before those of the upper face
   static const std::vector<int> hex20{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15};
   static const std::vector<int> wedge15{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11};
   static const std::vector<ExodusKind> kinds = {
-      {"BAR", {2, 3}, 1, Shape::bar2, line},
-      {"BEAM", {2, 3}, 1, Shape::bar2, line},
-      {"TRUSS", {2, 3}, 1, Shape::bar2, line},
+      {"BAR", {2}, 1, Shape::bar2, line},
+      {"BAR", {3}, 1, Shape::bar2, line3},
+      {"BEAM", {2}, 1, Shape::bar2, line},
+      {"BEAM", {3}, 1, Shape::bar2, line3},
+      {"TRUSS", {2}, 1, Shape::bar2, line},
+      {"TRUSS", {3}, 1, Shape::bar2, line3},
       {"ROD", {2}, 1, Shape::bar2, line},
-      {"EDGE", {2, 3}, 1, Shape::bar2, line},
+      {"EDGE", {2}, 1, Shape::bar2, line},
+      {"EDGE", {3}, 1, Shape::bar2, line3},
       {"TRI", {3, 4, 6, 7}, 2, Shape::bar2, tri},
       {"QUAD", {4, 5, 8, 9}, 2, Shape::bar2, quad},
       {"SHELL", {3, 6}, 2, Shape::bar2, tri},

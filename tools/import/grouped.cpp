@@ -58,7 +58,8 @@ void GroupedMesh::add_cells(Element& e, std::vector<std::int64_t>& cells) {
   if (!made) e.cell = in.mesh.n_cells();
   cells.push_back(e.cell);
   if (!e.is_pyramid()) {
-    if (!made) in.mesh.add_cell(e.shape, e.nodes, -1, e.id);
+    const std::vector<std::int64_t> ends(e.nodes.begin(), e.dimension == 1 ? e.nodes.begin() + 2 : e.nodes.end());
+    if (!made) in.mesh.add_cell(e.shape, ends, -1, e.id);
     return;
   }
   cells.push_back(e.cell + 1);

@@ -34,7 +34,7 @@ class GroupedMesh {
   /// The row of a node by its number, or -1.
   [[nodiscard]] std::int64_t row(std::int64_t id) const;
   /// An element of dimension 1, 2 or 3 (its shape is of no use in dimension 2), its nodes in our order: of faces the corners, of lines the
-  /// ends; a solid tet4 of five nodes is a pyramid, base first.  False where its number was there before.
+  /// ends and what is between them; a solid tet4 of five nodes is a pyramid, base first.  False where its number was there before.
   bool add_element(int dimension, Shape shape, std::int64_t id, std::int64_t property, std::vector<std::int64_t> rows,
                    bool has_middles = false);
   /// The element of this number, or null.

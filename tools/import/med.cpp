@@ -29,13 +29,13 @@ struct MedKind {
   std::vector<int> p;
 };
 const std::vector<MedKind>& med_kinds() {
-  static const std::vector<int> line{0, 1}, tri{0, 1, 2}, quad{0, 1, 2, 3};
+  static const std::vector<int> line{0, 1}, line3{0, 1, 2}, line4{0, 1, 2, 3}, tri{0, 1, 2}, quad{0, 1, 2, 3};
   static const std::vector<int> hex20{0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17};
   static const std::vector<int> wedge15{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
   static const std::vector<MedKind> kinds = {
       {MED_SEG2, 1, 2, Shape::bar2, line},
-      {MED_SEG3, 1, 3, Shape::bar2, line},
-      {MED_SEG4, 1, 4, Shape::bar2, line},
+      {MED_SEG3, 1, 3, Shape::bar2, line3},
+      {MED_SEG4, 1, 4, Shape::bar2, line4},
       {MED_TRIA3, 2, 3, Shape::bar2, tri},
       {MED_TRIA6, 2, 6, Shape::bar2, tri},
       {MED_TRIA7, 2, 7, Shape::bar2, tri},

@@ -28,7 +28,7 @@ const UnvKind* unv_kind(int id) {
   // quadratic cells are listed ring by ring: corner, middle, corner, ...
   static const std::vector<UnvKind> kinds = {
       {{11, 21}, 1, Shape::bar2, {0, 1}, 2},
-      {{22, 24}, 1, Shape::bar2, {0, 2}, 3},
+      {{22, 24}, 1, Shape::bar2, {0, 2, 1}, 3},
       {{41, 91}, 2, Shape::bar2, {0, 1, 2}, 3},
       {{42, 92}, 2, Shape::bar2, {0, 2, 4}, 6},
       {{44, 94}, 2, Shape::bar2, {0, 1, 2, 3}, 4},
