@@ -161,7 +161,9 @@ int main(int argc, char** argv) {
     const auto* units = app->add_option("--units", o.units,
                                         "system of the file's numbers, all converted to SI: m-kg-s, mm-t-s, mm-kg-ms, in-lbf-s, ft-lbf-s")
                             ->type_name("SYSTEM");
-    app->add_option("--scale", o.scale, "factor on the geometry alone; STEP and IGES say their unit of length")->type_name("S");
+    app->add_option("--scale", o.scale,
+                    "factor on the geometry and on displacements that a deck prescribes; STEP and IGES say their unit of length")
+        ->type_name("S");
     app->add_option("--order", o.order, "2: quadratic cells (linear ones get nodes in the middle of their edges)")->type_name("N");
     app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")
         ->type_name("H");

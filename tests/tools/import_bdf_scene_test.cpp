@@ -322,5 +322,31 @@ TEST_F(ImportBdfScene, RegionsOfFacesThatMayMeetAreAContact) {
   EXPECT_NEAR(last("motion/SPC_1", 6)[0], 10, 1e-5);
 }
 
+// PLOAD and PLOAD2 push along the normal that their grids or shells turn about, however the solids are numbered.
+TEST_F(ImportBdfScene, PressuresByGridsPushAlongTheirNormalOnSolidsOfEitherHand) {
+  std::string grids;
+  for (int i = 0; i < 8; ++i) grids += fmt::format("GRID,{},,{}.,{}.,{}.\n", i + 1, (i + 1) / 2 % 2, i / 2 % 2, i / 4);
+  for (const char* cell : {"1,2,3,4,5,6\n,7,8\n", "5,6,7,8,1,2\n,3,4\n"})
+    for (const char* load :
+         {"PLOAD,2,1000.,5,6,7,8\n", "CQUAD4,50,9,5,6,7,8\nPLOAD2,2,1000.,50\n", "CQUAD4,50,9,8,7,6,5\nPLOAD4,2,50,-1000.\n"}) {
+      SCOPED_TRACE(std::string(cell) + load);
+      run(statics + grids + "CHEXA,1,1," + cell + "PSOLID,1,1\nMAT1,1,1.+9,,0.\n" + foot + load);
+      EXPECT_NEAR(last("motion/SPC_1", 6)[2], -1000, 1e-3);
+    }
+}
+
+// In a deck in millimetres that --scale makes metres, displacements are lengths too: of nodes, and of grids of beams.
+TEST_F(ImportBdfScene, DisplacementsThatTheDeckPrescribesAreScaledAsItsLengths) {
+  std::string moved;
+  for (int a = 17; a <= 20; ++a) moved += fmt::format("SPC,1,{},1,.5\n", a);
+  run("SOL 101\nCEND\nSPC = 1\nBEGIN BULK\n" + bar() + foot + moved, false, "--scale 1e-3");
+  EXPECT_NEAR(head().x(), 5e-4, 1e-12);
+  solve(
+      "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,4.+3,8.+6,2.+6,3.+6\n"
+      "MAT1,1,2.1+11,8.+10,,7850.\nSPC1,1,123456,1\nSPC,1,2,3,.5\n",
+      "a.bdf", "--scale 1e-3");
+  EXPECT_NEAR(last("body/grid_2", 12)[2], 5e-4, 1e-9);
+}
+
 }  // namespace
 }  // namespace hilo::test::import_bdf_scene_test

@@ -160,12 +160,25 @@ TEST_F(ImportInp, WhatIsNotReadIsListedWithItsLine) {
     expect_said(said);
 }
 
-TEST_F(ImportInp, ScaleChangesOnlyTheGeometry) {
+TEST_F(ImportInp, ScaleChangesLengthsAlone) {
   const Mesh m = imported(deck("loads.inp"), "--scale 2 --scene-out scene.toml");
   EXPECT_NEAR(volume(m), 8 * 4000, 1e-9);
   EXPECT_DOUBLE_EQ(m.region_data[0].E, 210000);
   const Scene s = Scene::load(place / "scene.toml");
-  EXPECT_DOUBLE_EQ(s.entries("motion")[1].vector3("displacement").y(), 0.5);
+  EXPECT_DOUBLE_EQ(s.entries("motion")[1].vector3("displacement").y(), 1) << "0.5 of the deck";
+}
+
+// A velocity is no length, also where the scene has its displacement.
+TEST_F(ImportInp, AVelocityThatTheDeckPrescribesIsNotScaled) {
+  for (const char* type : {"DISPLACEMENT", "VELOCITY"}) {
+    imported_deck("a.inp",
+                  two_cubes + "*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*DENSITY\n1.\n*SOLID SECTION, ELSET=low, MATERIAL=m\n" +
+                      fmt::format("*STEP\n*DYNAMIC, DIRECT\n0.1, 1.\n*BOUNDARY, TYPE={}\n1, 1, 1, 3.\n*END STEP\n", type),
+                  "--scale 1e-3 --scene-out scene.toml");
+    const Scene s = Scene::load(place / "scene.toml");
+    ASSERT_EQ(s.entries("motion").size(), 1u) << err;
+    EXPECT_NEAR(s.entries("motion")[0].vector3("displacement").x(), *type == 'D' ? 3e-3 : 3, 1e-12) << type;
+  }
 }
 
 TEST_F(ImportInp, OrderTwoKeepsVolumeAndFacesAndPutsNodesInTheMiddle) {

@@ -31,7 +31,7 @@ class Sheets;
 struct ImportOptions {
   std::string units = "m-kg-s";                        // system of the numbers in the deck
   bool units_given = false;                            // by --units
-  double scale = 1;                                    // factor on the geometry alone
+  double scale = 1;                                    // factor on lengths alone
   int order = 1;                                       // 2: quadratic cells
   std::optional<double> merge;                         // distance below which nodes are one        [unit of the file]
   std::optional<double> size;                          // largest edge when a geometry is meshed    [unit of the file]

@@ -228,7 +228,8 @@ void BdfScene::supports() {
       int turns = 0;
       for (size_t k = 0; k < 6; ++k)
         if (h.bits >> k & 1) {
-          (k < 3 ? body.by.way : body.by.turn) += h.value[k] * (k < 3 ? si("m") : 1) * axes(a).col(static_cast<Eigen::Index>(k % 3));
+          (k < 3 ? body.by.way : body.by.turn) +=
+              h.value[k] * (k < 3 ? options_.scale * si("m") : 1) * axes(a).col(static_cast<Eigen::Index>(k % 3));
           turns += k > 2 && h.value[k] != 0;
         }
       if (turns > 1) throw Error(h.place, "SPC turns the grid of a body about more than one axis, which is not read", "about one");

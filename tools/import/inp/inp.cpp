@@ -259,7 +259,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   }
   complete_pyramids(d);
   take_modal(d, in);
-  find_motions(d, in);
+  find_motions(d, in, options.scale);
   join_steps(d, in);
   check_names(d);
   if (options.rigid_beams ||

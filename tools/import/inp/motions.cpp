@@ -118,12 +118,15 @@ bool integrate(InpDeck& d, InpNodal& l, std::map<std::pair<std::string, int>, st
 
 }  // namespace
 
-void find_motions(InpDeck& d, Imported& in) {
+void find_motions(InpDeck& d, Imported& in, double scale) {
   for (const InpBaseMotion& m : d.base_motions) move_base(d, m, in);
   std::map<std::pair<std::string, int>, std::string> known;
   std::vector<InpNodal> lines;
   for (InpNodal l : d.supports)
-    if (integrate(d, l, known, in)) lines.push_back(l);
+    if (integrate(d, l, known, in)) {
+      if (l.rate > 0) l.value /= scale;
+      lines.push_back(l);
+    }
   d.supports = std::move(lines);
 }
 

@@ -33,8 +33,8 @@ int inp_facet(Shape shape, int face);
 // steps, in this order
 /// *FREQUENCY and *MODAL DYNAMIC or *STEADY STATE DYNAMICS behind it become one step.
 void take_modal(InpDeck& deck, Imported& in);
-/// Velocities and accelerations of supports, and *BASE MOTION, become displacements.
-void find_motions(InpDeck& deck, Imported& in);
+/// Velocities and accelerations of supports, and *BASE MOTION, become displacements; of lengths alone --scale has its say.
+void find_motions(InpDeck& deck, Imported& in, double scale);
 /// Supports and loads of the first steps become those of one run, with amplitudes over its whole time, and `deck.plan` says what is run:
 /// static steps one behind the other, or what follows from their equilibrium, dynamic steps or modes.  Steps that this cannot say are
 /// named, with what is in them.

@@ -56,7 +56,7 @@ void InpScene::slides() {
     Held& h = held[static_cast<int>(i)];
     if (const auto past = h.is ? history(h.amplitude, "*BOUNDARY", h.place) : std::nullopt) {
       massless_body(scene_, name, at, s.place);
-      motion_of_body(scene_, scene_.unique("motion", name), name, {h.by * si("m") * axis}, at, *past, h.place);
+      motion_of_body(scene_, scene_.unique("motion", name), name, {point(h.by * axis)}, at, *past, h.place);
     } else
       sliding_body(scene_, name, axis, at, s.place);
     for (const auto a : s.rows) {
@@ -129,7 +129,7 @@ void InpScene::supports_of_ties() {
       HeldBody& h = held[id];
       for (int k = first; k <= last; ++k) {
         h.bits |= 1u << (k - 1);
-        (k > 3 ? h.by.turn : h.by.way)[(k - 1) % 3] = b.value * (k > 3 ? 1 : si("m"));
+        (k > 3 ? h.by.turn : h.by.way)[(k - 1) % 3] = b.value * (k > 3 ? 1 : o_.scale * si("m"));
       }
       if ((h.by.turn.array() != 0).count() > 1)
         throw Error(b.place, "*BOUNDARY turns a reference node about more than one axis, which is not read", "about one");
