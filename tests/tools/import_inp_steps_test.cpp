@@ -236,5 +236,21 @@ TEST_F(ImportInpSteps, WhatOneRunCannotSayIsToldAndTheStepsBeforeItStay) {
   }
 }
 
+// A pressure of 2 Pa on the end, along x: as a traction it points inwards too where the cells are numbered as in a mirror.
+TEST_F(ImportInpSteps, APressureThatShakesPushesInwardsOnSolidsOfEitherHand) {
+  std::string mirrored = bar;
+  for (const auto& [of, as] : {std::pair("1, 1, 2, 3, 4, 5, 6, 7, 8\n", "1, 5, 6, 7, 8, 1, 2, 3, 4\n"),
+                               std::pair("2, 5, 6, 7, 8, 9, 10, 11, 12\n", "2, 9, 10, 11, 12, 5, 6, 7, 8\n"), std::pair("2, S2", "2, S1")})
+    mirrored.replace(mirrored.find(of), std::string_view(of).size(), as);
+  for (const auto& [text, face] : {std::pair(bar, "P2"), std::pair(mirrored, "P1")}) {
+    imported_deck("a.inp",
+                  text + "*STEP\n*FREQUENCY\n2\n" + end + "*STEP\n*STEADY STATE DYNAMICS\n1., 9., 5\n*DLOAD\n2, " + face + ", 2.\n" + end,
+                  "--scene-out s.toml");
+    const Scene scene = Scene::load(place / "s.toml");
+    ASSERT_EQ(scene.entries("load").size(), 1u) << err;
+    EXPECT_LT((scene.entries("load")[0].vector3("traction") - Vec3(-2, 0, 0)).norm(), 1e-12) << face;
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test::import_inp_steps_test

@@ -123,6 +123,10 @@ TEST_F(ImportMiddles, BetweenTwoThatAreMovedTheMiddleGoesTheMeanWay) {
       if (m.X[a].x() < 1 - 1e-9) continue;
       EXPECT_NEAR(u[a].x(), 1e-3 * (1 + m.X[a].y() + 2 * m.X[a].z()), 1e-9);
     }
+    // of the cube, 4 edges lead from the foot to this face and 4 lie in it
+    expect_said(
+        "warning: order 2: 8 nodes in the middle of edges from nodes that are held to nodes that are moved, one cell apart, go the mean "
+        "way");
   }
 }
 
@@ -162,6 +166,17 @@ TEST_F(ImportMiddles, PlanesThroughAnAxisStayPlanes) {
     }
     EXPECT_EQ(err.find("supports whose axes are up to 10 deg apart are held along the mean axis") != std::string::npos, everywhere) << err;
   }
+}
+
+// Opposite faces that move as one, node by node, as a deck without nodes in the middle says it.
+TEST_F(ImportMiddles, JointsOfSingleNodesAreToldToTieNoneBetweenThem) {
+  const Cube cube{1, Mat3::Identity()};
+  std::string text = cube.bdf(), equal;
+  for (int a = 1; a <= 7; a += 2) equal += fmt::format("MPC,4,{},1,1.,{},1,-1.\n", a + 1, a);
+  solve(text.replace(text.find("SPC=1\n"), 0, "MPC=4\n") + equal, "a.bdf", "--order 2");
+  expect_said("warning: order 2: joints tie single nodes, and none of the 12 nodes in the middle of edges between them");
+  solve(cube.bdf(), "a.bdf", "--order 2");
+  EXPECT_EQ(err.find("warning: order 2"), std::string::npos) << err;
 }
 
 }  // namespace

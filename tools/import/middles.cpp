@@ -50,6 +50,25 @@ struct Middles {
   }
 };
 
+/// Between nodes one cell apart that a deck holds and moves: the mean is that of a linear cell.
+std::int64_t one_cell_apart(const Mesh& m, const std::unordered_map<std::int64_t, Held>& held, std::int64_t first,
+                            const std::vector<std::array<std::int64_t, 2>>& ends) {
+  std::set<std::int64_t> found;
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+    const auto nodes = m.cell(c);
+    const auto corners = nodes.first(static_cast<size_t>(info(m.shape[static_cast<size_t>(c)]).n_corners));
+    if (!std::ranges::all_of(corners, [&](auto a) { return held.contains(a); })) continue;
+    for (size_t k = 0; k < 3; ++k) {
+      if (!std::ranges::all_of(corners, [&](auto a) { return held.at(a).along[k] != nullptr; })) continue;
+      const auto by = [&](std::int64_t a) { return held.at(a).along[k]->by[static_cast<Eigen::Index>(k)]; };
+      for (const auto a : nodes)
+        if (a >= first)
+          if (const auto& [from, to] = ends[static_cast<size_t>(a - first)]; by(from) != by(to)) found.insert(a);
+    }
+  }
+  return static_cast<std::int64_t>(found.size());
+}
+
 void hold(Imported& in, SceneWriter& scene, const std::vector<std::array<std::int64_t, 2>>& ends, double metres) {
   Mesh& m = in.mesh;
   const std::int64_t first = m.n_nodes() - static_cast<std::int64_t>(ends.size());
@@ -116,6 +135,11 @@ void hold(Imported& in, SceneWriter& scene, const std::vector<std::array<std::in
     in.notes.push_back(fmt::format("order 2: nodes between supports whose axes are up to {:.0f} deg apart are held along the mean axis",
                                    std::acos(apart) * 180 / std::numbers::pi));
 
+  if (const auto n = one_cell_apart(m, held, first, ends); n > 0)
+    in.notes.push_back(fmt::format(
+        "warning: order 2: {} nodes in the middle of edges from nodes that are held to nodes that are moved, one cell apart, go the "
+        "mean way, as in linear cells: two cells there are better",
+        n));
   std::set<std::string> of_supports;
   for (const SceneSupport& s : supports) of_supports.insert(s.set);
   std::set<std::int64_t> tied;  // one by one
