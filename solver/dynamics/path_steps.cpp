@@ -269,7 +269,7 @@ class PathSteps final : public Steps {
     system.advance(taken_.stage);
     taken_.stage.work_from = &from.q;
     why_ = system.fault(to.state.q);
-    if (why_.empty()) why_ = system.rolls_too_far(from.q, q);
+    if (why_.empty()) why_ = system.too_far(from.q, q);
     Taken before{stage(from.q, at_.share), from.lambda};
     before.stage.end = &to.state.q;
     if (why_.empty()) why_ = run_.audit->look(from.q, to.state, {&taken_, 1}, report_, p, 0, &before);

@@ -155,7 +155,7 @@ class StaticSteps final : public Steps {
       examined_ = stability.known(), factored = stability.factored();
     }
     if (!r.converged) return r.reason;
-    if (const std::string far = system.rolls_too_far(state.q, reached.q); !far.empty()) return far;
+    if (const std::string far = system.too_far(state.q, reached.q); !far.empty()) return far;
     if (!unstable_ && !(from_rest && at_.done == 0) && ((examined_ && !is_large()) || r.iterations > few_iterations))
       jump_ =
           BranchJump(system, *run_.solver, options)

@@ -121,15 +121,16 @@ std::string Joints::fault(const Config& q) const {
   return "joint \"" + c.name + "\" " + c.rows->fault(c.values(q));
 }
 
-std::pair<int, double> Joints::rolled(const Config& q0, const Config& q1) const {
-  std::pair<int, double> most{-1, 0};
-  for (size_t j = 0; j < size(); ++j) {
-    if (!list[j].velocity_rows) continue;
-    const auto turned = [&](const Config& q) { return Mat3(q.R[list[j].end[0].body].transpose() * q.R[list[j].end[1].body]); };
+/// Rows of velocities hold at the middle of a step, and err by a twelfth of the square of its turn.
+std::string Joints::too_far(const Config& q0, const Config& q1) const {
+  constexpr double most = 0.1;  // [rad]
+  for (const Joint& j : list) {
+    if (!j.velocity_rows) continue;
+    const auto turned = [&](const Config& q) { return Mat3(q.R[j.end[0].body].transpose() * q.R[j.end[1].body]); };
     const double turn = std::abs(Eigen::AngleAxisd(Mat3(turned(q0).transpose() * turned(q1))).angle());
-    if (turn >= most.second) most = {static_cast<int>(j), turn};
+    if (turn > most) return fmt::format("joint \"{}\" rolls by {:.2g} rad in one step", j.name, turn);
   }
-  return most;
+  return {};
 }
 
 void Joints::commit(const Config& q, const Config*) {

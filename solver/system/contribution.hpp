@@ -244,6 +244,8 @@ class Stateful {
  public:
   /// Why q cannot be, or "" ("joint \"j\" ran off the end of its curve"); the same on all ranks.
   virtual std::string fault(const Config& /*q*/) const { return {}; }
+  /// Why a step from rest at q0 to rest at q1 is too long, or ""; the same on all ranks.
+  virtual std::string too_far(const Config& /*q0*/, const Config& /*q1*/) const { return {}; }
   /// The state at the end of a step of this stage, beside the accepted one, which evaluations go on from until settle().
   virtual void advance(const Stage& /*stage*/) {}
   /// What advance() found becomes the accepted state, or is forgotten.

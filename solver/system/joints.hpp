@@ -37,8 +37,7 @@ class Joints final : public Contribution, public Equations, public Constraining,
   void number(Layout& layout) override;
   void add_constraints(std::vector<std::unique_ptr<Constraint>>& out) override;
   std::string owner(int block) const override;
-  /// The joint with rows of velocities whose ends turn most against each other from q0 to q1, and that turn [rad]; -1 where none has such.
-  std::pair<int, double> rolled(const Config& q0, const Config& q1) const;
+  std::string too_far(const Config& q0, const Config& q1) const override;
   void evaluate(Pass& p) const override;
   void add_work(const Moment& m, Work& sum) const override;
   void look_at_rows(const Config& q, double t, double factor, Violation& worst) const override;

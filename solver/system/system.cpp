@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "system/joints.hpp"
 #include "system/linear_beams.hpp"
 #include "system/mode_forces.hpp"
 #include "system/solids.hpp"
@@ -227,10 +226,10 @@ System::Turn System::largest_turn(const Config& q0, const Config& q1) const {
   return {2 * std::acos(std::sqrt(std::clamp(worst, 0.0, 1.0))), most.part, most.item};
 }
 
-std::string System::rolls_too_far(const Config& q0, const Config& q1) const {
-  constexpr double most = 0.1;  // [rad]; rows of velocities at the middle of a step err by a twelfth of the square of its turn
-  const auto [joint, turn] = part<Joints>().rolled(q0, q1);
-  return turn <= most ? "" : fmt::format("joint \"{}\" rolls by {:.2g} rad in one step", part<Joints>()[joint].name, turn);
+std::string System::too_far(const Config& q0, const Config& q1) const {
+  for (const Stateful* part : all<Stateful>())
+    if (std::string why = part->too_far(q0, q1); !why.empty()) return why;
+  return {};
 }
 
 std::string System::name(const Turn& turn) const { return turn.part >= 0 ? all<Turning>()[turn.part]->name(turn.item) : ""; }

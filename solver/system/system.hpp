@@ -91,8 +91,8 @@ class System : public Points {
     int part = -1, item = -1;
   };
   Turn largest_turn(const Config& q0, const Config& q1) const;
-  /// Why a step from rest at q0 to rest at q1 cannot be taken, or "": what rolls or slides on an edge turns too far for one.
-  std::string rolls_too_far(const Config& q0, const Config& q1) const;
+  /// Why a step from rest at q0 to rest at q1 is too long, or "".
+  std::string too_far(const Config& q0, const Config& q1) const;
   /// "body \"b\"" or "a cell of region \"r\"".
   std::string name(const Turn& turn) const;
   /// The share, in (0, 1], of the way that a correction of Newton's may go: the least that a contribution allows.  Collective.

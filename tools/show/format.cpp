@@ -80,7 +80,7 @@ The audit looks at every step before it is accepted and refuses what fails: the 
 | key | what is looked at | bound |
 |---|---|---|
 | `passed`, `failed` | the verdict; where it is false, why the run stopped | |
-| `energy` | kinetic + elastic + potential - work + dissipated, minus what Newton left: largest change in a step (`step`) and in all (`sum`), divided by the largest kinetic energy, each with its time. Text where the method does not keep it | max(1e-8, 10 `solver.tolerance`), beside rounding; `sum` after N > 1000 steps N/1000 times that |
+| `energy` | kinetic + elastic + potential - work + dissipated, minus what Newton left: largest change in a step (`step`) and in all (`sum`), divided by the largest kinetic energy, each with its time. Text where the method does not keep it | max(1e-8, 10 `solver.tolerance`), beside rounding, of `sum` that of one step times sqrt(N); after N > 1000 steps N/1000 times that |
 | `newton`, in `energy` | what Newton left in all: the work of its residual during each step, and of joint forces as their rows open, divided by all energies that came or went | max(1e-4, 10 `solver.tolerance`); as `sum` |
 | `joint_rows` | largest value of a joint's row, which joint, when | max(1e-9, 20 `solver.tolerance`), times the scene's length |
 | `dropped_rows` | the same of rows that are redundant and not solved for | the same |

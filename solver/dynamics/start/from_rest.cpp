@@ -107,7 +107,7 @@ RestReport come_to_rest(RunParts& run, State& state, const LoadLevel& under) {
     report.iterations = iterations += taken;
     if (report.converged) {
       report.reason = keep_at_rest(system, q, under);
-      if (report.reason.empty()) report.reason = system.rolls_too_far(state.q, q), rolls = rolls || !report.reason.empty();
+      if (report.reason.empty()) report.reason = system.too_far(state.q, q), rolls = rolls || !report.reason.empty();
       stays = system.largest_difference(q, state.q) <= 1e-6 * system.length;
       if (report.reason.empty() && !stays && arrived && work_of(system, forces, Unknown(system, state.q, q).increments(system)) > 0)
         report.reason = "a step goes against the forces";

@@ -89,7 +89,7 @@ bool settle_down(RunParts& run) {
   const std::vector<double> none = state.lambda;
   NewtonReport r;
   if (!touching(system)) r = equilibrium(system, *run.solver, state.q, state.lambda, 0, 1, true, run.newton);
-  if (!r.converged || !system.rolls_too_far(drawn, state.q).empty()) {
+  if (!r.converged || !system.too_far(drawn, state.q).empty()) {
     state.q = drawn, state.lambda = none;
     r = come_to_rest(run, state, {});
   }
