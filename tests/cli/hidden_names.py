@@ -10,7 +10,7 @@ import sys
 
 repo = os.path.abspath(sys.argv[1])
 TOGETHER = ["solver/base", "solver/model", "solver/dynamics", "tools/import", "post"]  # others are compiled one by one
-TOGETHER += ["solver/system/build", "solver/system/reduction"]
+TOGETHER += ["solver/linear/petsc", "solver/system/build", "solver/system/reduction"]
 TOGETHER += [f"tests/{room}" for room in ("model", "physics", "linear", "system", "dynamics", "tools", "geometry", "post", "verify")]
 
 
