@@ -77,9 +77,9 @@ class ModeSteps final : public Steps {
     std::vector<FoundMode> modes = natural_modes(system, *run_.solver, rest, spins ? std::max(40, 3 * wanted) : wanted, !spins,
                                                  [&](int found) { progress.show(found, 0, 0); });
     progress.done();
+    check_rest(modes);
     if (spins) modes = whirling_modes(system, *run_.solver, rest, modes, wanted);
     if (modes.empty()) throw Error(time_.where("analysis"), "nothing that has mass can move: there are no modes");
-    if (!spins) check_rest(modes);
     tell_stuck(modes);
     for (const FoundMode& m : modes) record(m);
     run_.lists.emplace_back("modes", as_json(modes));

@@ -5,7 +5,8 @@
 //
 //   z'' + C z' + K z = 0   in the modes without spin,
 //
-// C with the gyroscopic moments and what dampers see of the spin, K no longer symmetric.
+// C with the gyroscopic moments and what dampers see of the spin, K no longer symmetric.  Where joints turn along, z is seen from a frame
+// that does (dynamics/modes/turning_frame.hpp).
 #pragma once
 #include "dynamics/modes/natural_modes.hpp"
 
