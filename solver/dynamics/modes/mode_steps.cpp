@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/table.hpp"
+#include "dynamics/modes/accelerated_support.hpp"
 #include "dynamics/modes/natural_modes.hpp"
 #include "dynamics/modes/whirl.hpp"
 #include "dynamics/run_parts.hpp"
@@ -54,12 +55,21 @@ class ModeSteps final : public Steps {
     System& system = run_.system;
     State& rest = run_.state;
     set_rows(system, run_.redundancy.at_pose);
-    if (time_.text("start") == "equilibrium" && !settle_down(run_)) return;
+    const AcceleratedSupport support = accelerated_support(system, rest.q);
+    if (!support.who.empty() && !support.all) tell_accelerated(support.who);
+    const Vec3 carried = support.all.value_or(Vec3::Zero());
+    if (time_.text("start") == "equilibrium") {
+      const FeltLess at_rest(system, carried);
+      if (!settle_down(run_)) return;
+    }
     run_.figures.projected = run_.impulses.strike(system, *run_.solver, rest, run_.talk).change;
     if (!is_free(system))
       throw Error(time_.where("analysis"), "nothing is free to move: joints, drives and motions hold it all", "there are no modes");
     const bool spins = system.largest_rate(rest.v) > 0;
     consistent_acceleration(system, *run_.solver, rest, 1e-3);
+    if (spins && !support.who.empty())
+      throw Error(time_.where("analysis"), "modes of what spins are not found where " + support.who + " accelerates what it moves",
+                  "let it begin without acceleration; gravity less the acceleration of a support does the same");
     if (const std::string why = spins ? not_steady(system, rest) : ""; !why.empty())
       throw Error(time_.where("analysis"), "modes are those of a state at rest, or of bodies that turn steadily in their places: " + why,
                   "see what [[initial]] gives");
@@ -74,10 +84,19 @@ class ModeSteps final : public Steps {
     run_.recorder->first(rest, run_.audit->ledger());
     Progress progress(run_.options.quiet, 0, time_.number("modes"));
     const int wanted = static_cast<int>(time_.number("modes"));
-    std::vector<FoundMode> modes = natural_modes(system, *run_.solver, rest, spins ? std::max(40, 3 * wanted) : wanted, !spins,
-                                                 [&](int found) { progress.show(found, 0, 0); });
+    State relative = rest;  // without the acceleration of supports
+    const Config along = uniform(system, rest.q, carried);
+    combine(relative.a, {{1, &rest.a}, {-1, &along}});
+    for (size_t b = 0; b < rest.q.R.size(); ++b)  // nor what a steady spin has
+      relative.a.R[b] -= rest.v.R[b] * rest.q.R[b].transpose() * rest.v.R[b];
+    std::vector<FoundMode> modes;
+    {
+      const FeltLess at_rest(system, carried);
+      modes = natural_modes(system, *run_.solver, relative, spins ? std::max(40, 3 * wanted) : wanted, !spins,
+                            [&](int found) { progress.show(found, 0, 0); });
+    }
     progress.done();
-    check_rest(modes);
+    check_rest(modes, system.largest_rate(relative.a));
     if (spins) modes = whirling_modes(system, *run_.solver, rest, modes, wanted);
     if (modes.empty()) throw Error(time_.where("analysis"), "nothing that has mass can move: there are no modes");
     tell_stuck(modes);
@@ -113,8 +132,15 @@ class ModeSteps final : public Steps {
                      "is held by one of kind fixed in its place",
                      frictions.front().label(), stuck - modes.begin() + 1, stuck->figures.damping));
   }
+  /// There is no rest beside a support that does not take all along alike.
+  void tell_accelerated(const std::string& who) const {
+    const std::string what = who + " accelerates what it moves at the start, and not everything alike";
+    const char* hint = "let it begin without acceleration, or give that of a support as gravity";
+    if (time_.text("start") == "equilibrium") throw Error(time_.where("start"), what + ": there is no equilibrium beside it", hint);
+    warn(time_.where("analysis"), fmt::format("{}: modes are those of that instant, and not about a state of rest ({})", what, hint));
+  }
   /// What is not at rest would come to rest where each mode has given way to its share of the forces.
-  void check_rest(const std::vector<FoundMode>& modes) const {
+  void check_rest(const std::vector<FoundMode>& modes, double acceleration) const {
     const System& system = run_.system;
     Config way;
     combine(way, {{0, &run_.state.q}});
@@ -126,8 +152,8 @@ class ModeSteps final : public Steps {
     }
     if (const double away = system.largest_rate(way); away > 1e-2 * system.length)
       warn(time_.where("analysis"),
-           fmt::format("the state is not at rest: it accelerates by up to {:.3g} m/s^2, and rests about {:.2g} m away ({})",
-                       system.largest_rate(run_.state.a), away, "start = \"equilibrium\" goes there"));
+           fmt::format("the state is not at rest: it accelerates by up to {:.3g} m/s^2, and rests about {:.2g} m away ({})", acceleration,
+                       away, "start = \"equilibrium\" goes there"));
   }
 
   /// The shape, of a hundred thousandth of the scene at most, on the state of rest; forces as they are at its turning point.

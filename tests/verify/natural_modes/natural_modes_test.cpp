@@ -222,6 +222,45 @@ TEST_F(NaturalModes, AreRefusedWhereTheyHaveNoMeaning) {
   expect_end(work.run("hilo-solve scene.toml -o run.h5"), 2, "something moves along");
 }
 
+// A pendulum whose hinge is accelerated sideways swings about its rest in what it feels, (g^2 + a^2)^(1/2)/l, by a joint and by a motion.
+TEST_F(NaturalModes, OnASupportThatAcceleratesAreThoseAboutItsRest) {
+  const double g = 9.81, a = 5, l = 0.5, drawn = std::sqrt(g / l), hung = std::sqrt(std::hypot(g, a) / l);
+  const std::string bob = "gravity = [0, 0, -9.81]\n" + body("car", 1, {0, 0, 0}, {1, 1, 1}) +
+                          body("bob", 1, {0, 0, -l}, {1e-9, 1e-9, 1e-9}) + pin("h", "car", "bob", {0, 0, 0}),
+                    rail = axial("prismatic", "p", "ground", "car", {0, 0, 0}, {1, 0, 0},
+                                 "velocity = 5\nhistory = {t = [0, 1], value = [0, 1]}\n"),
+                    course = motion("translation", "m", "car",
+                                    "displacement = " + list({2 * a / (pi * pi), 0, 0}) +
+                                        "\nhistory = {t = [0, 1], value = [0, 1], interpolation = \"smooth\"}");  // cosine ramps
+  const auto with = [&](const std::string& scene, const std::string& start) {
+    work.write("scene.toml", scene + "[time]\nanalysis = \"modes\"\n" + start);
+    return work.run("hilo-solve scene.toml -o run.h5");
+  };
+  const std::string start = "start = \"equilibrium\"\n";
+  for (const std::string& scene : {bob + rail, bob + course}) {
+    const Ran told = with(scene, "");
+    EXPECT_EQ(told.exit, 0) << told.err;
+    EXPECT_NE(told.err.find("the state is not at rest"), std::string::npos) << told.err;
+    EXPECT_NEAR(Results(work / "run.h5").history("mode")(1, 0) * 2 * pi / drawn, 1, 1e-5);
+    const Ran quiet = with(scene, start);
+    EXPECT_EQ(quiet.exit, 0) << quiet.err;
+    EXPECT_EQ(quiet.err.find("warning"), std::string::npos) << quiet.err;
+    EXPECT_NEAR(Results(work / "run.h5").history("mode")(1, 0) * 2 * pi / hung, 1, 1e-5);
+  }
+  // held by what stands as well, it has no rest beside the support
+  const std::string held_too = bob + rail + spring("bushing", "soft", "ground", "bob", "at = [0, 0, -0.5]\nstiffness = [20, 0, 0]");
+  const Ran told = with(held_too, "");
+  EXPECT_EQ(told.exit, 0) << told.err;
+  EXPECT_NE(told.err.find("joint \"p\" accelerates what it moves at the start, and not everything alike"), std::string::npos) << told.err;
+  expect_end(with(held_too, start), 2, "there is no equilibrium beside it");
+  expect_end(
+      with(body("disc", 1, {0, 0, 0}, {1, 1, 1}) + body("car", 1, {1, 0, 0}, {1, 1, 1}) +
+               axial("prismatic", "p", "ground", "car", {1, 0, 0}, {1, 0, 0}, "velocity = 5\nhistory = {t = [0, 1], value = [0, 1]}") +
+               axial("revolute", "r", "car", "disc", {0, 0, 0}, {0, 0, 1}) + initial("disc", "spin = [0, 0, 9]"),
+           ""),
+      2, "modes of what spins are not found where joint \"p\" accelerates");
+}
+
 // Truth: 4 k/m, 4 k a^2/J, 4 k b^2/J, and three motions that nothing resists, beside which the others are all as fast as the mean of all.
 TEST_F(NaturalModes, OfABodyThatSlidesFreelyOnFourSprings) {
   const double k = 1e5, a = 0.3, b = 0.2;
