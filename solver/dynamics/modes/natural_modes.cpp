@@ -75,7 +75,7 @@ std::vector<FoundMode> find_modes(const System& system, KktSolver& solver, const
     throw Error(
         "",
         "the forces have no potential, so these modes do not exist. Such forces are a pressure that follows its face, a moment that "
-        "turns along, a load that nothing balances, and friction under load",
+        "turns along, a load that nothing balances, friction under load, and a rolling contact that bears a force along its plane",
         "leave them out of the analysis; start = \"equilibrium\" finds a balance where there is one");
   if (!modes.converged && found > wanted) return {};
   if (!modes.converged) throw Error("", fmt::format("{} modes were not found", found), "ask for fewer: time.modes", Exit::not_converged);

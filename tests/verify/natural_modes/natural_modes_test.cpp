@@ -220,6 +220,12 @@ TEST_F(NaturalModes, AreRefusedWhereTheyHaveNoMeaning) {
   const std::string arm = body("arm", 2, {0, 0, -0.5}, {0.1, 0.2, 0.15});
   work.write("scene.toml", arm + "[[initial]]\non = [\"arm\"]\nvelocity = [1, 0, 0]\n[time]\nanalysis = \"modes\"\n");
   expect_end(work.run("hilo-solve scene.toml -o run.h5"), 2, "something moves along");
+  // a disc that springs hold on a slope: the force of its contact turns with the disc as it yaws
+  work.write("scene.toml", "gravity = [3, 1, -9.81]\n" + body("d", 2, {0, 0, 0.12}, {0.02, 0.03, 0.02}) +
+                               axial("rolling", "c", "ground", "d", {0, 0, 0.2}, Vec3::UnitZ(), "radius = 0.2\naxle = [0, 1, 0]\n") +
+                               bushing("s", "d", {0, 0, 0.2}, {500, 500, 0}, "angular_stiffness = [50, 50, 50]\n") +
+                               "[time]\nanalysis = \"modes\"\nstart = \"equilibrium\"\n");
+  expect_end(work.run("hilo-solve scene.toml -o run.h5"), 2, "a rolling contact that bears a force along its plane");
 }
 
 // A pendulum whose hinge is accelerated sideways swings about its rest in what it feels, (g^2 + a^2)^(1/2)/l, by a joint and by a motion.
