@@ -22,6 +22,7 @@ struct Interval {
   double h;                 // [s]
   double factor = 1;        // of a motor's history
   double load = 0;          // what presses the surfaces of a joint together [N]
+  bool no_impacts = false;  // restitution takes nothing
   bool is_instant = false;  // rates are those half-way between r0 and r1, and not means over a step
 };
 

@@ -48,7 +48,7 @@ struct Stop final : SpringLaw {
     out.energy += potential(x1[0]);
   }
   void viscous(const Values& x0, const Values& x1, const Interval& step, Response& out) const override {
-    if (!loss.any()) return;
+    if (!loss.any() || step.no_impacts) return;
     const auto [s, D] = quotient(x0[0], x1[0]);
     if (s == 0) return;
     const double into = std::copysign(1, s) / step.h, rate = into * (x1[0] - x0[0]);

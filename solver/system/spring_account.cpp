@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "system/brake.hpp"
 #include "system/springs.hpp"
 #include "system/system.hpp"
 
@@ -166,6 +167,21 @@ void Springs::add_taken(std::span<const int> group, const Stage& s, std::span<co
       viscous(c, s, lambda, r);
       sum[g] += std::abs(r.dissipated) + std::abs(r.supplied);
     }
+}
+
+std::pair<std::string, std::string> Springs::takes_most(const Stage& s, std::span<const double> lambda) const {
+  std::pair<std::string, std::string> out;
+  double most = 0;
+  for (const Spring& c : list) {
+    Response r;
+    viscous(c, s, lambda, r);
+    if (r.dissipated > most) most = r.dissipated, out = {c.group, c.name};
+  }
+  return out;
+}
+
+std::pair<std::string, std::string> takes_most(const System& system, const Stage& stage, std::span<const double> lambda) {
+  return system.part<Springs>().takes_most(stage, lambda);
 }
 
 bool springs_are_smooth(const System& system) {

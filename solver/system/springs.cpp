@@ -53,7 +53,7 @@ Interval Springs::interval(const Spring& c, const Stage& s, std::span<const doub
   for (const Carrier& end : c.ends())
     if (s.tempo && end.body >= 0 && points_.body_block[end.body] >= 0) step.h = s.h / s.tempo[end.body];
   if (c.history) step.factor = s.t1 > s.t0 ? c.history->mean(s.t0, s.t1) : (*c.history)(s.t0);
-  step.is_instant = !s.conserving();
+  step.is_instant = !s.conserving(), step.no_impacts = s.no_impacts;
   if (c.pressing.joint < 0) return step;
   const double* multiplier = lambda.data() + joints_.row(c.pressing.joint);
   for (const int r : c.pressing.rows) step.load += multiplier[r] * multiplier[r];

@@ -27,6 +27,8 @@ class Springs final : public Contribution, public Equations, public Stateful, pu
   void add_to_report(Json& run) const override;
   void tie(Ties& ties) const override;
   void add_timed(std::span<const int> group, double t, double T, std::span<double> sum) const override;
+  /// `takes_most` (system/brake.hpp).
+  std::pair<std::string, std::string> takes_most(const Stage& s, std::span<const double> lambda) const;
   void add_taken(std::span<const int> group, const Stage& s, std::span<const double> lambda, std::span<double> sum) const override;
 
  private:

@@ -62,6 +62,7 @@ struct Stage {
   const Collocation* step = nullptr;         // of a stage that shares its step with others: rows hold increments, forces keep energy
   int member = 0;                            // which of them this is
   bool slopes_of_end = false;                // of strains that are not of the second degree, where `weight` takes a mean: for buckling
+  bool no_impacts = false;                   // restitution takes nothing: for motions so small that nothing meets
   bool fixed_friction = false;               // tangents without what the pressure adds to friction: for eigenvalues
   /// Derivatives of w0 and w1 by `end`.
   double slope0() const {

@@ -90,7 +90,7 @@ class Linearized : AboutState {
       combine(before, {{1, &state_.q}, {-h / 2, &v}});
       combine(after, {{1, &state_.q}, {h / 2, &v}});
       Stage s = stage(state_.q);
-      s.v = &v;
+      s.v = &v, s.no_impacts = true;
       if (dampers) s.w0 = &before, s.w1 = &after, s.h = h;
       Residual r;
       system_.evaluate(s, state_.lambda, r, nullptr);

@@ -12,6 +12,7 @@
 #include "dynamics/modes/whirl.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start/start.hpp"
+#include "system/brake.hpp"
 #include "system/touching.hpp"
 
 namespace hilo {
@@ -124,13 +125,31 @@ class ModeSteps final : public Steps {
   }
   /// At rest friction of joints is a damper that lets nothing swing: a joint that sticks.
   void tell_stuck(const std::vector<FoundMode>& modes) const {
-    const auto frictions = run_.scene.entries("friction");
-    const auto stuck = std::ranges::find_if(modes, [](const FoundMode& m) { return m.figures.damping >= 1; });
-    if (frictions.empty() || stuck == modes.end()) return;
-    warn(frictions.front().place.text(),
-         fmt::format("{}: at rest it is a damper of mu N r^2/slip_velocity, and mode {} has the damping ratio {:.3g}: a joint that sticks "
-                     "is held by one of kind fixed in its place",
-                     frictions.front().label(), stuck - modes.begin() + 1, stuck->figures.damping));
+    for (const Entry& friction : run_.scene.entries("friction")) {
+      const auto stuck = std::ranges::find_if(modes, [&](const FoundMode& m) {
+        return m.figures.damping >= 1 && brake_of(m) == std::pair<std::string, std::string>{"friction", friction.name};
+      });
+      if (stuck == modes.end()) continue;
+      warn(
+          friction.place.text(),
+          fmt::format("{}: at rest it is a damper of mu N r^2/slip_velocity, and mode {} has the damping ratio {:.3g}: a joint that sticks "
+                      "is held by one of kind fixed in its place",
+                      friction.label(), stuck - modes.begin() + 1, stuck->figures.damping));
+    }
+  }
+  /// What takes most of the motion of a mode.
+  std::pair<std::string, std::string> brake_of(const FoundMode& m) const {
+    const System& system = run_.system;
+    const State& rest = run_.state;
+    Config way, before, after;
+    combine(way, {{0, &rest.q}});
+    system.add_rates(way, rest.q, m.x);
+    const double h = 10, by = 1e-6 * system.length / std::max(1e-300, system.largest_rate(way)) * h / 2;
+    combine(before, {{1, &rest.q}, {-by, &way}});
+    combine(after, {{1, &rest.q}, {by, &way}});
+    Stage s = stage_at(rest.q, rest.t);
+    s.w0 = &before, s.w1 = &after, s.h = h, s.no_impacts = true;
+    return takes_most(system, s, rest.lambda);
   }
   /// There is no rest beside a support that does not take all along alike.
   void tell_accelerated(const std::string& who) const {

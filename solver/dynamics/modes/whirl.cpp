@@ -101,7 +101,7 @@ class SpinTerms : AboutState {
     s.a = &zero_;
     Residual still, moving;
     system_.evaluate(s, state_.lambda, still, nullptr);
-    s.a = &a, s.w0 = &before, s.w1 = &after, s.h = h, s.v = &v;
+    s.a = &a, s.w0 = &before, s.w1 = &after, s.h = h, s.v = &v, s.no_impacts = true;
     system_.evaluate(s, state_.lambda, moving, nullptr);
     for (size_t i = 0; i < moving.r.size(); ++i) moving.r[i] -= still.r[i];
     return {free_part(still.r), free_part(moving.r)};

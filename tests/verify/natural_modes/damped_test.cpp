@@ -112,6 +112,48 @@ TEST_F(NaturalModes, StrongDampersCoupleThoseAskedForToManyOthers) {
   }
 }
 
+// A part that rests on a stop or on a support: the restitution of either is a law of impacts, and takes nothing of a vibration.
+TEST_F(NaturalModes, OnAStopTakeNoRestitution) {
+  const double m = 2, k = 5000, c = 30;
+  const std::string part = "gravity = [0, 0, -10]\n" + body("a", m, {0, 0, 0}, {0.01, 0.01, 0.01}) +
+                           axial("prismatic", "j", "ground", "a", {0, 0, 0}, Vec3::UnitZ()) +
+                           bushing("b", "a", {0, 0, 0}, {0, 0, 100}, fmt::format("damping = [0, 0, {}]", c)),
+                    end = "[time]\nanalysis = \"modes\"\nstart = \"equilibrium\"\n",
+                    stop = "[[stop]]\nkind = \"slide\"\nname = \"s\"\njoint = \"j\"\nlower = -0.01\nstiffness = 5000\nrestitution = 0.5\n",
+                    support =
+                        spring("support", "s", "ground", "a", "at = [0, 0, 0]\naxis = [0, 0, 1]\nstiffness = 5000\nrestitution = 0.5");
+  const double ratio = c / (2 * std::sqrt((k + 100) * m));
+  for (const std::string& on : {stop, support}) {
+    work.write("scene.toml", part + on + end);
+    succeeded(work.run("hilo-solve scene.toml -o run.h5"));
+    const Eigen::MatrixXd found = Results(work / "run.h5").history("mode");
+    EXPECT_NEAR(found(1, 0) * 2 * pi / std::sqrt((k + 100) / m), 1, 1e-5) << on;
+    EXPECT_NEAR(found(1, 1) / ratio, 1, 1e-4) << on;
+  }
+}
+
+// What the warning of friction that sticks names is what takes the motion: of two frictions the one that does, and none where a damper
+// does.
+TEST_F(NaturalModes, ThatStickNameTheFrictionThatHoldsThem) {
+  const auto slide = [](const std::string& name, double at, double coefficient, double damping) {
+    return body(name, 1, {at, 0, 0}, {0.01, 0.01, 0.01}) + axial("prismatic", "j" + name, "ground", name, {at, 0, 0}, Vec3::UnitZ()) +
+           bushing("b" + name, name, {at, 0, 0}, {0, 0, 100}, fmt::format("damping = [0, 0, {}]", damping)) +
+           fmt::format("[[friction]]\nname = \"f{0}\"\njoint = \"j{0}\"\ncoefficient = {1}\npreload = 1\nslip_velocity = 1e-3\n", name,
+                       coefficient);
+  };
+  const auto told = [&](const std::string& scene) {
+    work.write("scene.toml", scene + "[time]\nanalysis = \"modes\"\n");
+    const Ran done = work.run("hilo-solve scene.toml -o run.h5");
+    EXPECT_EQ(done.exit, 0) << done.err;
+    return done.err;
+  };
+  const std::string both = told(slide("u", 0, 1e-6, 0) + slide("v", 1, 0.3, 0));
+  EXPECT_EQ(both.find("friction \"fu\": at rest it is a damper"), std::string::npos) << both;
+  EXPECT_NE(both.find("friction \"fv\": at rest it is a damper"), std::string::npos) << both;
+  const std::string damper = told(slide("u", 0, 1e-6, 300));
+  EXPECT_EQ(damper.find("at rest it is a damper"), std::string::npos) << damper;
+}
+
 // A vehicle on eight arms has 22 modes: what else the factors show of a space that is exhausted is rounding.
 TEST_F(NaturalModes, AreNoMoreThanThereAre) {
   std::string scene = body("hull", 20000, {0, 0, 1}, {2e4, 5e4, 6e4});
