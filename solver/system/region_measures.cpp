@@ -147,11 +147,25 @@ std::vector<Output> RegionMeasures::outputs() const {
   return out;
 }
 
+/// On all ranks the same.
+void RegionMeasures::look_at_stress(const Sight& seen) {
+  if (of_shapes_) return;
+  if (!stress_) stress_.emplace(system_);
+  if (!stress_->has_metal()) return;
+  std::vector<double> most(regions_.size(), 0.0);
+  for (size_t k = 0; k < regions_.size(); ++k)
+    most[k] = stress_->largest(k, seen.q, amplitudes(system_.modes[system_.part<LinearRegions>().regions[k].modes], seen.q),
+                               regions_[k].over_yield.value);
+  system_.comm->max(most);
+  for (size_t k = 0; k < regions_.size(); ++k) regions_[k].over_yield.look(most[k], seen.t);
+}
+
 void RegionMeasures::observe(const Sight& seen) {
   const auto& linear = system_.part<LinearRegions>();
   const double t = seen.t;
   std::vector<double>& out = seen.end;
   regions_.resize(linear.regions.size());
+  look_at_stress(seen);
   for (size_t k = 0; k < regions_.size(); ++k) {
     const LinearRegion& r = linear.regions[k];
     const Modes& m = system_.modes[r.modes];
@@ -185,8 +199,10 @@ void RegionMeasures::add_to_report(Json& run) const {
                    much_shortening = 0.012;
   const auto& linear = system_.part<LinearRegions>();
   Table table;
-  table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling", "tension", "shortening", "bend", "spin"};
-  const char* names[] = {"modes_left_out", "load_band", "quadratic_strain", "buckling", "tension", "shortening", "bend", "spin"};
+  table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling", "tension",
+                  "shortening",    "bend",       "spin",      "stress/yield"};
+  const char* names[] = {"modes_left_out", "load_band", "quadratic_strain", "buckling", "tension", "shortening",
+                         "bend",           "spin",      "stress_over_yield"};
   std::vector<Json> lists(std::size(names), Json::object());
   Json beyond = Json::list();
   struct Beyond {
@@ -204,7 +220,8 @@ void RegionMeasures::add_to_report(Json& run) const {
                  shortening = r.inertia.value > 0 ? r.shortening.value / r.inertia.value : 0;
     auto& row = table.rows.emplace_back(std::vector{name});
     int column = 0;
-    for (const double x : {lacking, band, quadratic, share, std::max(1.0, r.tension.value), shortening, linear.bend(k), linear.spin(k)}) {
+    for (const double x : {lacking, band, quadratic, share, std::max(1.0, r.tension.value), shortening, linear.bend(k), linear.spin(k),
+                           r.over_yield.value}) {
       lists[column++].add(name, {x, 3});
       row.push_back(fmt::format("{:.2g}", x));
     }
@@ -230,6 +247,11 @@ void RegionMeasures::add_to_report(Json& run) const {
     if (linear.bend(k) > linear.bend_limit(k))
       leaves("bend", linear.bend(k), linear.bend_limit(k), -1,
              fmt::format("bends by {:.2g} of its length: more than its modes are good for", linear.bend(k)), Told::when_it_was);
+    if (r.over_yield.value > 1)
+      leaves("stress_over_yield", r.over_yield.value, 1, r.over_yield.t,
+             fmt::format("its von Mises stress is {:.3g} of the yield stress at t = {:.4g} s: a linear region does not yield (tag it "
+                         "nonlinear)",
+                         r.over_yield.value, r.over_yield.t));
     if (m.stiffens) continue;
     if (linear.spin(k) >= LinearRegions::spin_limit)
       leaves("spin", linear.spin(k), LinearRegions::spin_limit, -1,

@@ -15,19 +15,23 @@
 //                      2 sqrt(3) times its root mean square over the region (of one that shortens evenly, that of end to end), over the
 //                      largest acceleration less gravity of the region.  After an impact small bends do this, by the square of their
 //                      frequency
+//   stress over yield  von Mises stress of a metal, which does not flow here, over its yield stress (system/stress_over_yield.hpp)
 //
 // They take part in no equation.
 #pragma once
 #include <array>
+#include <optional>
 
 #include "system/linear_regions.hpp"
 #include "system/region_support.hpp"
+#include "system/stress_over_yield.hpp"
 
 namespace hilo {
 
 class RegionMeasures final : public Contribution, public Observer {
  public:
-  explicit RegionMeasures(const System& system) : system_(system) {}
+  /// `of_shapes`: it sees shapes, whose size says nothing.
+  RegionMeasures(const System& system, bool of_shapes) : system_(system), of_shapes_(of_shapes) {}
 
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
@@ -55,12 +59,16 @@ class RegionMeasures final : public Contribution, public Observer {
     Peak energy, quadratic, share, growth;  // of strain, of quadratic strain [J]; load over buckling load; (1 - u_axes)/(1 - u)
     Peak tension;                           // (1 + p)/(1 + p_axes)
     Peak shortening, inertia;               // accelerations [m/s^2]
-    auto peaks() { return std::array{&energy, &quadratic, &share, &growth, &tension, &shortening, &inertia}; }
+    Peak over_yield;                        // von Mises stress over yield stress
+    auto peaks() { return std::array{&energy, &quadratic, &share, &growth, &tension, &shortening, &inertia, &over_yield}; }
   };
   Region& region(size_t k, const Config& q);
   static double shortening(Region& at, double t, const Eigen::VectorXd& s, const Eigen::VectorXd& speed);
+  void look_at_stress(const Sight& seen);
   const System& system_;
+  const bool of_shapes_;
   std::vector<Region> regions_;
+  std::optional<StressOverYield> stress_;
 };
 
 }  // namespace hilo

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Flexible cells: batches of one shape and law, each a run of calls of one kernel.
 #pragma once
+#include <cmath>
+
 #include "physics/solid_kernel.hpp"
 #include "system/contribution.hpp"
 
@@ -13,6 +15,7 @@ struct SolidBatch {
   double density;              // [kg/m^3]
   double beta = 0, alpha = 0;  // stiffness- and mass-proportional damping [s, 1/s]
   double area = 0;             // of bars [m^2]
+  double yield = HUGE_VAL;     // above which the material flows, as new; of a linear region it does not [Pa]
   int region;
   std::vector<int> cells;      // local cells
   std::vector<int> nodes;      // (n_cells x n)

@@ -89,6 +89,17 @@ with tempfile.TemporaryDirectory() as folder:
     refused(scene(joints.replace('"b0"', '"b7"')), 2, "no model to judge by runs", "b7")
     refused(scene(joints).replace("shapes", "") + '[region.a]\nshapes = "none.csv"\n', 2, "no file none.csv")  # cells would not read it
 
+    # metal that would yield is none of a linear region, however small its strains
+    metal = Deck()
+    metal.block("a", (0, 0, 0), (0.1, 0.05, 0.05), (3, 1, 1)).write()
+    pulled = ('[time]\nend = 0.02\nstep = 5e-4\n[region.a]\nmaterial = "m"\n[material.m]\nkind = "j2"\nE = 2e11\nnu = 0.3\ndensity = 7800\nyield = 250e6\nhardening = 2e9\n'
+              '[[motion]]\nkind = "fixed"\nname = "wall"\non = "a0"\n[[probe]]\nname = "tip"\non = "a1"\n'
+              '[[quantity]]\nname = "sag"\nkind = "peak"\nformula = "x [m] = probe.tip.x - 0.1"\n'
+              '[[load]]\nkind = "force"\nname = "pull"\non = "a1"\nforce = [{}, 0, 0]\nhistory = {{t = [0, 0.02], value = [0, 1], interpolation = "smooth"}}\n')
+    for force, level in ((4e5, "linear"), (6.9e5, "nonlinear")):
+        levels, advice = advise(pulled.format(force))
+        assert levels["a"][1] == level, (force, levels)
+
     # shells have no strains of the second degree in modes: nonlinear, by their names
     plates = Deck()
     plates.block("a", (0, 0, 0), (0.4, 0.05, 0.004), (4, 1, 1)).block("b", (0.4, 0, 0), (0.4, 0.05, 0.004), (4, 1, 1)).write()

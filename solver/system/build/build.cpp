@@ -67,9 +67,9 @@ void Builder::add_contributions() {
   s.add<Motions>(s, beams, [&joints](const Moment& at, int j) { return joints.held_points(at, j); });
   s.add<Stations>(s);
   s.add<JointCoordinates>();
-  s.add<RegionMeasures>(s);
-  s.add<ModalDamping>(s);
   const std::string& analysis = scene_.table("time").text("analysis");
+  s.add<RegionMeasures>(s, analysis == "modes" || analysis == "buckling");
+  s.add<ModalDamping>(s);
   if (analysis == "modes") s.add<ModeOutput>(static_cast<int>(scene_.table("time").number("modes")));
   if (analysis == "buckling") s.add<BucklingModes>();
   if (analysis == "path") s.add<LoadPath>();

@@ -299,13 +299,29 @@ void Builder::make_batches() {
   warn_of_limits();
 }
 
+namespace {
+
+/// Infinite where a law never flows.
+double yield_stress(const Material& m) {
+  return std::visit(
+      [](const auto& law) {
+        if constexpr (requires { law.yield; })
+          return law.yield;
+        else
+          return HUGE_VAL;
+      },
+      m);
+}
+
+}  // namespace
+
 /// A batch of a region, without cells.
 SolidBatch Builder::batch_of(int region, Shape shape) const {
   const Region& r = regions_[region];
   SolidBatch b;
   b.region = region;
   b.shape = shape;
-  b.material = material_of(r);
+  b.material = material_of(r), b.yield = yield_stress(b.material);
   if (r.fidelity == Fidelity::linear && r.stiffening && !std::holds_alternative<Orthotropic>(b.material))
     b.material = StVenantKirchhoff{linear_moduli(b.material)};  // strains of the second degree, stress linear in them
   const bool is_static = this->is_static();

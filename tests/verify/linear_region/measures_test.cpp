@@ -151,5 +151,23 @@ TEST_F(LinearMeasures, WhatIsPulledWhileItBendsTellsThatItStiffens) {
   }
 }
 
+// Metal that is pulled by the stress s has s over its yield stress, linear or stiffening; what is elastic has none.
+TEST_F(LinearMeasures, MetalTellsItsStressOverYield) {
+  sag_by = "gravity = [0, 0, 0]";
+  for (const bool stiffens : {false, true})
+    for (const double share : {0.9, 1.2}) {
+      const std::string metal =
+          fmt::format("material.m.kind=\"j2\"' --set material.m.yield=1e6 --set 'region.block.stiffening={}", stiffens);
+      const Answer pulled = rest(clamp + push(-share * 1e6 * A), Fidelity::linear, "--set '" + metal + "'");
+      const std::string json = text_of(c / "run.json"), before = "\"stress_over_yield\": {\"block\": ";
+      ASSERT_NE(json.find(before), std::string::npos) << json;
+      EXPECT_NEAR(std::stod(json.substr(json.find(before) + before.size())), share, 0.01 * share);
+      EXPECT_EQ(pulled.said.find("block: its von Mises stress is 1.2 of the yield stress") != std::string::npos, share > 1) << pulled.said;
+      EXPECT_EQ(json.find("\"measure\": \"stress_over_yield\"") != std::string::npos, share > 1) << json;
+    }
+  rest(clamp + push(-1.2e6 * A), Fidelity::linear);
+  EXPECT_NE(text_of(c / "run.json").find("\"stress_over_yield\": {\"block\": 0}"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace hilo::test::measures_test
