@@ -3,23 +3,24 @@
 """hilo-advise on beams: what it chooses is within its tolerance of all beams nonlinear at half the step, and linear where that serves.
 Usage: advise_beams.py BIN"""
 import os
+import subprocess
 import tempfile
 
-from advised import hinge, levels, peak, refused, told, values, write
+from advised import BIN, hinge, levels, peak, refused, told, values, write
 
 
-def scene(sizes, turn, names="abc"):
+def scene(sizes, turn, names="abc", metre=1, second=1):
     """Bars of square section on hinges, one behind the other; the first hinge turns within .4 s."""
-    text = 'gravity = [0, 0, -9.81]\n[material.steel]\nE = 2e11\nnu = 0.3\ndensity = 7800\n'
+    text = f'gravity = [0, 0, {-9.81 * metre / second**2}]\n[material.steel]\nE = {2e11 / metre / second**2}\nnu = 0.3\ndensity = {7800 / metre**3}\n'
     for k, name in enumerate(names):
-        text += f'[section.{name}]\nkind = "rectangle"\nwidth = {sizes[k]}\nheight = {sizes[k]}\n'
-        text += f'[beam.{name}]\npoints = [[{k}, 0, 0], [{k + 1}, 0, 0]]\ncells = [4]\nsection = "{name}"\nmaterial = "steel"\n'
-        text += 'damping = 1.2e-5\n'
-        text += hinge(f"j{k}", "ground" if k == 0 else names[k - 1] + ".end", name + ".0", [k, 0, 0])
+        text += f'[section.{name}]\nkind = "rectangle"\nwidth = {sizes[k] * metre}\nheight = {sizes[k] * metre}\n'
+        text += f'[beam.{name}]\npoints = [[{k * metre}, 0, 0], [{(k + 1) * metre}, 0, 0]]\ncells = [4]\nsection = "{name}"\nmaterial = "steel"\n'
+        text += f'damping = {1.2e-5 * second}\n'
+        text += hinge(f"j{k}", "ground" if k == 0 else names[k - 1] + ".end", name + ".0", [k * metre, 0, 0])
         if k == 0:
-            text += f'angle = {turn}\nhistory = {{t = [0, 0.2, 0.4], value = [0, 0.5, 1], interpolation = "smoother"}}\n'
+            text += f'angle = {turn}\nhistory = {{t = [0, {0.2 * second}, {0.4 * second}], value = [0, 0.5, 1], interpolation = "smoother"}}\n'
         text += peak(f"R{k}", f"j{k}")
-    return text + '[time]\nend = 0.4\nstep = 1e-3\n'
+    return text + f'[time]\nend = {0.4 * second}\nstep = {1e-3 * second}\n'
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -46,6 +47,22 @@ with tempfile.TemporaryDirectory() as folder:
     assert [r["level"] for r in kept["regions"]] == ["linear", "nonlinear", "rigid"], kept["regions"]
     for options, what in ((("--keep", "a=stiffening"), "cannot stiffen"), (("--finer", "no.h5"), "there is no mesh")):
         refused([1], [what], *options)
+    # in other units it is the same: steps, ends and frequencies of its runs are those of the scene
+    ran = []
+    for units, size in (("m-kg-s", (1, 1)), ("mm-kg-ms", (1000, 1000))):
+        write(f'units = "{units}"\n' + scene((0.05, 0.05), 1, "ab", *size))
+        ran.append(told("--tol", "2%", "--work", units))
+    assert levels(ran[0]) == levels(ran[1]), ran
+    for one, other in zip(*(r["quantities"] for r in ran)):
+        assert abs(one["value"] / other["value"] - 1) < 1e-3, (one, other)
+    # and what it says to write
+    write(f'units = "mm-kg-ms"\n' + scene((0.05, 0.05), 1, "ab", 1000, 1000).replace("step = 1.0", "step = 20"))
+    refused([2], ["time.step = 4"], "--tol", "0.1%")
+    # what no level mends is told once, as the solver tells it
+    write(scene((0.05, 0.05), 1, "ab").replace('name = "j1"', 'name = "j1"\nstiffness = [1e6, 0, 0]'))
+    ran = subprocess.run([os.path.join(BIN, "hilo-advise"), "scene.toml"], capture_output=True, text=True)
+    told_why = [line for line in ran.stderr.splitlines() if "leaves a row" in line]
+    assert ran.returncode == 2 and len(told_why) == 1 and "no model to judge by runs" in told_why[0], ran.stderr
     write('[[body]]\nname = "b"\nmass = 1\ncom = [0, 0, 0]\ninertia = [1, 1, 1]\n[[quantity]]\nname = "e"\nkind = "peak"\njoint = "j"\n'
           + hinge("j", "ground", "b", [0, 0, 0]) + "[time]\nend = 1\nstep = 0.1\n")
     refused([1], ["neither a mesh nor beams"])

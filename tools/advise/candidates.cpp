@@ -121,16 +121,16 @@ Assignment Candidates::consistent(Assignment levels) const {
 Candidates::Job Candidates::job(const Request& request) const {
   const Entry& time = scene_.table("time");
   std::vector<std::string> more;
-  if (request.step != 1) more.push_back(fmt::format("time.step={:.17g}", time.number("step") * request.step));
+  if (request.step != 1) more.push_back(fmt::format("time.step={:.17g}", written("s", time.number("step") * request.step)));
   if (!time.given("error_estimate") && !time.given("tolerance")) more.push_back("time.error_estimate=\"never\"");  // a third of the time
   bool stress = false;
   for (const Entry& q : scene_.entries("quantity")) stress = stress || q.has("stress");
   const double end = time.number("end");
-  if (request.end > 0) more.push_back(fmt::format("time.end={:.17g}", request.end));
+  if (request.end > 0) more.push_back(fmt::format("time.end={:.17g}", written("s", request.end)));
   if (!stress)  // no quantity is one of fields
-    more.push_back(fmt::format("output.interval={:.17g}", end));
+    more.push_back(fmt::format("output.interval={:.17g}", written("s", end)));
   else if (request.end > 0 && !scene_.table("output").given("interval"))
-    more.push_back(fmt::format("output.interval={:.17g}", end / 50));
+    more.push_back(fmt::format("output.interval={:.17g}", written("s", end / 50)));
   for (size_t r = 0; r < request.levels.size(); ++r)
     if (is_beam(r))
       more.push_back(fmt::format("{}.fidelity=\"{}\"", table(r), word(request.levels[r])));
@@ -140,7 +140,7 @@ Candidates::Job Candidates::job(const Request& request) const {
     if (fidelity(request.levels[r]) != Fidelity::linear) continue;
     if (request.step == 1 && request.modes_in(r) == 1) continue;
     const Modes m = modes_of(r, request.modes_in(r));  // with half the step the same modes
-    more.push_back(fmt::format("{}.up_to={:.17g}", table(r), m.up_to));
+    more.push_back(fmt::format("{}.up_to={:.17g}", table(r), written("Hz", m.up_to)));
     if (request.modes_in(r) != 1) more.push_back(fmt::format("{}.modes={}", table(r), m.most));
   }
   Digest key;

@@ -55,6 +55,8 @@ class Candidates {
   bool is_beam(size_t r) const { return r >= mesh().region_name.size(); }
   /// In a scene: region."hull", beam."rail".
   std::string table(size_t r) const;
+  /// A number in SI units as the scene writes it.
+  double written(std::string_view unit, double si) const { return si / to_si(unit, scene_.units); }
   /// How many vibration modes a linear region has at most, and up to which frequency [Hz].  As the scene says, or `scale` times as many:
   /// frequencies of beams grow with the square of their number, and twice as far, for at least four modes there are in any case.
   struct Modes {

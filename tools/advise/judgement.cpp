@@ -110,6 +110,7 @@ bool Judgement::mend(const Candidate& c, Assignment& levels) {
 /// All regions linear, where a model like that runs.
 void Judgement::find_base() {
   Assignment levels = with(Level::linear);
+  std::string passed_over;
   while (true) {
     levels = all.consistent(levels);
     const Candidate& c = of({levels});
@@ -120,13 +121,16 @@ void Judgement::find_base() {
     levels = with(Level::nonlinear);
     if (c.failure.find(": no file ") != std::string::npos) throw Error("", c.failure, "", c.exit);
     if (levels == before) throw Error("", "no model to judge by runs: " + c.failure, "", c.exit);
-    warn("", fmt::format("{} does not run, and nothing says why: {}", label(before, all.names()), c.failure));
+    passed_over = fmt::format("{} does not run, so all of them are nonlinear, for what the run says names no region: {}",
+                              label(before, all.names()), c.failure);
   }
+  if (!passed_over.empty()) warn("", passed_over);
   const double end = all.scene().table("time").number("end");
   for (const QuantityValue& v : a.base->values)
     if (!v.why.empty())
-      throw Error("", v.why,
-                  v.measured == Measured::stress ? fmt::format("output.interval = {:.2g}: fields at 50 instants", end / 50) : "");
+      throw Error(
+          "", v.why,
+          v.measured == Measured::stress ? fmt::format("output.interval = {:.2g}: fields at 50 instants", all.written("s", end / 50)) : "");
   window_ = window_of(*a.base);
 }
 

@@ -187,7 +187,7 @@ std::string rules(const Candidates& all, const Advice& a, const std::string& com
     if (a.chosen->levels[r] == Level::stiffening) text += fmt::format("# in the scene: [{}] stiffening = true\n", all.table(r));
     if (a.chosen->modes_in(r) == 1 || fidelity(a.chosen->levels[r]) != Fidelity::linear) continue;
     const auto [most, up_to] = all.modes_of(r, a.chosen->modes_in(r));
-    text += fmt::format("# in the scene: [{}] modes = {}, up_to = {:.6g}\n", all.table(r), most, up_to);
+    text += fmt::format("# in the scene: [{}] modes = {}, up_to = {:.6g}\n", all.table(r), most, all.written("Hz", up_to));
   }
   return text;
 }

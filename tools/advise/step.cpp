@@ -93,7 +93,8 @@ void Judgement::refuse_step() const {
       fmt::format("the step alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.step[k]), v.unit, v.name, v.allowed, v.unit),
       v.measured == Measured::raw_acceleration
           ? "a raw acceleration holds all frequencies: give it a cfc"
-          : fmt::format("time.step = {:.2g}, or {}", time.number("step") * std::sqrt(most_step / 2 / step_over(k)), or_else));
+          : fmt::format("time.step = {:.2g}, or {}", all.written("s", time.number("step") * std::sqrt(most_step / 2 / step_over(k))),
+                        or_else));
 }
 
 }  // namespace hilo

@@ -79,7 +79,7 @@ void Builder::find_tie(const Entry& e, const std::array<std::vector<PairFacet>, 
     e.refuse("b",
              fmt::format("node {} at {} is {:.3g} m off \"{}\", more than {:.3g} m{}", mesh.node_id[found.open_node],
                          place(mesh.X[found.open_node]), found.open, e.text("a"), found.open_limit, limit),
-             fmt::format("move the parts together, or give gap = {:.3g}", 1.05 * found.open));
+             fmt::format("move the parts together, or give gap = {:.3g}", 1.05 * found.open / to_si("m", scene_.units)));
   if (found.twice_node >= 0)
     e.refuse("b",
              fmt::format("at node {}, {}, a facet of b faces \"{}\" in two layers", mesh.node_id[found.twice_node],

@@ -258,6 +258,9 @@ TEST(Ties, ThatCannotBeAreRefused) {
   expect_refused(good, {}, "Bzmim", "did you mean \"Bzmin\"");
   const Mesh apart = stack(Shape::hex8, Shape::hex8, 3, 4, nullptr, [](const Vec3& x) { return Vec3(x + Vec3(0, 0, 0.06)); });
   expect_refused(apart, {}, "Bzmin", "0.06 m off \"Azmax\", more than 0.0125 m, a twentieth of a facet (");
+  SceneCase in_mm("units = \"mm-kg-ms\"\n" + flight(tie("Azmax", "Bzmin", "")));  // what is to be written is in the units of the scene
+  in_mm.use(apart, {});
+  expect_end(in_mm.run("hilo-solve --quiet scene.toml mesh.h5"), 2, "give gap = 63)");
   const Mesh deep = stack(Shape::hex8, Shape::hex8, 3, 4, nullptr, [](const Vec3& x) { return Vec3(x - Vec3(0, 0, 0.06)); });
   expect_refused(deep, {}, "Bzmin", "0.06 m off \"Azmax\", more than 0.0125 m, a twentieth of a facet (");
   Mesh twice = good;
