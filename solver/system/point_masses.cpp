@@ -3,6 +3,26 @@
 
 namespace hilo {
 
+void PointMasses::add(const std::vector<std::pair<int, double>>& masses, const Vec3& centre) {
+  masses_.insert(masses_.end(), masses.begin(), masses.end());
+  entries_.push_back({masses_.size(), centre});
+}
+
+void PointMasses::add_reference_forces(std::vector<NodalForces>& list) const {
+  size_t first = 0;
+  for (const OfEntry& e : entries_) {
+    for (int k = 0; k < 6; ++k) {
+      NodalForces& forces = list.emplace_back();
+      for (size_t i = first; i < e.end; ++i) {
+        const auto& [n, m] = masses_[i];
+        const Vec3 axis = Vec3::Unit(k % 3), f = m * (k < 3 ? axis : Vec3(axis.cross(points_.X[n] - e.centre)));
+        if (!f.isZero(0)) forces.emplace_back(n, f);
+      }
+    }
+    first = e.end;
+  }
+}
+
 void PointMasses::evaluate(Pass& p) const {
   const Stage& s = p.s;
   for (const auto& [n, m] : masses_) {

@@ -163,6 +163,20 @@ TEST_F(NaturalModes, OfLinearRegionsAreThoseOfTheirCells) {
   }
 }
 
+// A mass on few nodes pulls at them as a load does: with the modes that a region has of itself.
+TEST_F(NaturalModes, OfALinearRegionWithAMassAtItsCornerAreThoseOfTheCells) {
+  const std::string scene = solid(7e10, 0.3, 2700) + held("xmin") +
+                            "[set.corner]\nkind = \"ball\"\nat = [0.5, 0.03, 0.02]\nradius = 1e-3\n[set.side]\nkind = \"box\"\nlow = [0.2, "
+                            "0.029, -1]\nhigh = [0.31, 0.031, 1]\n[[point_mass]]\nname = \"m\"\nmass = 2\n";
+  for (const char* on : {"on = \"corner\"\n", "on = \"side\"\n"}) {
+    use(beam({0.5, 0.03, 0.02}, 10), {Fidelity::nonlinear});
+    const auto cells = frequencies(scene + on, 5);
+    use(beam({0.5, 0.03, 0.02}, 10), {Fidelity::linear});
+    const auto linear = frequencies(scene + on, 5);
+    EXPECT_LT(((linear - cells).array() / cells.array()).abs().maxCoeff(), 2e-3) << on << linear << "\n\n" << cells;
+  }
+}
+
 // A disc on two bearings whirls: J w^2 -+ Omega Jp w - 2 k L^2 = 0 backward and forward, and sqrt(2 k/m) along.
 TEST_F(NaturalModes, OfARotorAreItsWhirls) {
   const double m = 10, J = 0.4, Jp = 0.6, k = 1e5, L = 0.3, spin = 200;
