@@ -200,12 +200,19 @@ bool may_differ(const std::string& key, const std::string& was, const std::strin
          key == "solver.iterations";
 }
 
-/// Entries of things that have a state, as "body.arm".
+/// Whether another value makes what was kept that of another system or file.
+bool shapes_what_is_kept(const std::string& key) {
+  for (const char* start : {"tie.", "time.integrator", "time.error_estimate", "output.envelope", "output.nodes", "output.precision"})
+    if (key.starts_with(start)) return true;
+  return false;
+}
+
+/// Entries of things that have a state or a history, as "body.arm".
 std::set<std::string> things(const std::map<std::string, std::string>& values) {
   std::set<std::string> out;
   for (const auto& [key, value] : values)
-    for (const char* section :
-         {"body.", "point_mass.", "beam.", "joint.", "spring.", "stop.", "motor.", "friction.", "contact.", "tie.", "motion.", "region."})
+    for (const char* section : {"body.", "point_mass.", "beam.", "joint.", "spring.", "stop.", "motor.", "friction.", "contact.", "tie.",
+                                "motion.", "region.", "probe.", "sensor."})
       if (key.starts_with(section)) out.insert(key.substr(0, key.rfind('.')));
   return out;
 }
@@ -230,18 +237,16 @@ void require_same(const Checkpoint& from, const Scene& scene, const std::string&
   for (const auto& [one, other, what] : {std::tuple(&had, &has, "is not there, and was"), std::tuple(&has, &had, "is there, and was not")})
     for (const std::string& thing : *one)
       if (accept && !other->contains(thing))
-        throw Error(scene.path, fmt::format("{} {} when the run was kept: its state cannot be taken over", thing, what),
+        throw Error(scene.path, fmt::format("{} {} when the run was kept: what belongs to it cannot be taken over", thing, what),
                     "run the scene from its start");
   const bool in_time = value(is, "time.analysis") == "\"dynamic\"";
   std::map<std::string, std::string> keys = was;
   keys.insert(is.begin(), is.end());
   for (const auto& [key, ignored] : keys) {
     const std::string a = value(was, key), b = value(is, key);
-    if (a != b && accept && key.starts_with("tie."))
-      throw Error(
-          scene.path,
-          fmt::format("{} is {}, and was {} when the run was kept: rows of other nodes cannot be taken over", key, shown(b), shown(a)),
-          "run the scene from its start");
+    if (a != b && accept && shapes_what_is_kept(key))
+      throw Error(scene.path, fmt::format("{} is {}, and was {} when the run was kept, which does not fit it", key, shown(b), shown(a)),
+                  "run the scene from its start");
     if (a == b || may_differ(key, a, b, from.t, in_time)) continue;
     if (key == "time.end" && in_time)
       differs(fmt::format("time.end is {}, before the checkpoint at t = {:.6g} s", shown(b), from.t));

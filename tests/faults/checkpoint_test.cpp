@@ -180,9 +180,14 @@ TEST_F(Stopped, WhatDiffersIsRefusedByTheKey) {
           "absent.h5: no checkpoint lies beside it (absent.checkpoint.h5 is not there; see --checkpoint)");
   EXPECT_EQ(work.run(go_on + "--set time.step=2e-3 --accept --set time.end=0.6 --checkpoint 100steps").exit, 0);
   work.write("scene.toml", std::string(pendulum) + "[[sensor]]\nname = \"s\"\non = \"arm\"\n");
-  const auto o = work.run(go_on);
-  EXPECT_EQ(o.exit, input);
-  EXPECT_NE(o.err.find("sensor."), o.err.npos) << o.err;
+  for (const char* how : {"", "--accept"}) {
+    const auto o = work.run(go_on + how);
+    EXPECT_EQ(o.exit, input);
+    EXPECT_NE(o.err.find("sensor."), o.err.npos) << o.err;
+  }
+  work.write("scene.toml", pendulum);
+  for (const char* other : {"time.error_estimate=\"never\"", "time.integrator=\"bdf2\"", "output.precision=\"single\""})
+    expect_end(work.run(go_on + "--accept --set time.end=0.7 --set '" + other + "'"), input, "which does not fit it");
 }
 
 TEST_F(Stopped, ADamagedCheckpointIsPassedOverForTheOneBefore) {
