@@ -202,7 +202,7 @@ bool may_differ(const std::string& key, const std::string& was, const std::strin
 
 /// Whether another value makes what was kept that of another system or file.
 bool shapes_what_is_kept(const std::string& key) {
-  for (const char* start : {"tie.", "time.integrator", "time.error_estimate", "output.envelope", "output.nodes", "output.precision"})
+  for (const char* start : {"tie.", "time.integrator", "time.error_estimate", "output.nodes", "output.precision"})
     if (key.starts_with(start)) return true;
   return false;
 }

@@ -126,11 +126,14 @@ void Judgement::find_base() {
   }
   if (!passed_over.empty()) warn("", passed_over);
   const double end = all.scene().table("time").number("end");
-  for (const QuantityValue& v : a.base->values)
-    if (!v.why.empty())
-      throw Error(
-          "", v.why,
-          v.measured == Measured::stress ? fmt::format("output.interval = {:.2g}: fields at 50 instants", all.written("s", end / 50)) : "");
+  const Entry& output = all.scene().table("output");
+  const double instants = output.given("interval") ? end / output.number("interval") : 50;
+  for (const QuantityValue& v : a.base->values) {
+    const bool is_seldom = v.measured == Measured::stress && instants < 10;
+    if (v.why.empty() && !is_seldom) continue;
+    throw Error("", v.why.empty() ? fmt::format("quantity \"{}\": stress at {:.2g} instants is no history", v.name, instants) : v.why,
+                is_seldom ? fmt::format("output.interval = {:.2g}: fields at 50 instants", all.written("s", end / 50)) : "");
+  }
   window_ = window_of(*a.base);
 }
 

@@ -30,6 +30,7 @@ TEST(Envelope, IsTheLargestOfTheFieldsOfAllSteps) {
   const Results all = c.solved(run + "--set output.interval=1e-9"), few = c.solved(run + "--set output.interval=0.025", "few.h5");
   EXPECT_EQ(all.steps().size(), static_cast<size_t>(all.t().size()));
   EXPECT_LT(few.steps().size(), 5u);
+  double unseen = 0;  // by the fields of a few outputs
   for (const char* name : {"displacement", "acceleration", "von_mises"}) {
     const auto [most, t] = largest(all, name);
     const double scale = most.maxCoeff();
@@ -37,8 +38,9 @@ TEST(Envelope, IsTheLargestOfTheFieldsOfAllSteps) {
     EXPECT_LT((envelope(all, name) - most).abs().maxCoeff(), 1e-14 * scale) << name;
     EXPECT_LT((envelope(all, std::string(name) + "_time") - t).abs().maxCoeff(), 1e-12) << name;
     EXPECT_TRUE((envelope(few, name) == envelope(all, name)).all()) << name << ": what is put out does not matter";
-    EXPECT_GT((most - largest(few, name).first).maxCoeff(), 0.01 * scale) << name << ": or this test would see nothing";
+    unseen = std::max(unseen, (most - largest(few, name).first).maxCoeff() / scale);
   }
+  EXPECT_GT(unseen, 0.01) << "or this test would see nothing";
   EXPECT_FALSE(c.solved("--set time.end=0.01", "none.h5").file().has("/envelope"));
 }
 
