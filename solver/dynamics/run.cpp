@@ -359,6 +359,13 @@ void RunParts::stop(const std::string& reason) {
         fmt::format("; nothing leads out of the singular position at the start, where rows of {} \"{}\" depend on others",
                     redundancy.singular_joints.size() > 1 ? "joints" : "joint", fmt::join(redundancy.singular_joints, "\", \""));
   if (audit->opens_dropped_row() && system.traits().is_driven) report.reason += "; what is driven or moved contradicts it";
+  double far = 0;
+  for (const std::vector<Vec3>* points : {&state.q.c, &state.q.x})
+    for (const Vec3& p : *points) far = std::max(far, p.norm());
+  if (far = system.comm->max(far); far > 1e5 * system.length)
+    report.reason +=
+        fmt::format("; the scene lies {:.2g} m from its origin, {:.1g} times its size, where positions are rounded to {:.1g} m", far,
+                    far / system.length, 1e-16 * far);
   report.complete = false;
   report.t = state.t;
 }

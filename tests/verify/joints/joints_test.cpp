@@ -112,6 +112,16 @@ TEST(SingleJoint, OfABodyThatIsHeldHasNoForce) {
 
 // Truth: at rest a joint carries the weight at the joint point and its moment r x m g; on b, and with the opposite sign when the ends are
 // swapped.
+// A top of a millimetre 1.4 km away: positions have four digits less than the tolerance asks for.
+TEST(SingleJoint, FarFromTheOriginSaysSo) {
+  const Vec3 at(1000, 1000, 0), com = at + Vec3(0, 0, 7e-4);
+  SceneCase c("gravity = [0, 0, -9.81]\n" + body("top", 1, com, {2e-7, 2e-7, 2e-7}) + joint("spherical", "tip", "ground", "top", at) +
+              initial("top", "spin = [100, 0, 500]\nabout = " + list(at)) + in_time(0.03, 5e-5));
+  const Ran o = c.run("hilo-solve --quiet scene.toml");
+  EXPECT_EQ(o.exit, 3);
+  EXPECT_NE(o.err.find("the scene lies 1.4e+03 m from its origin"), o.err.npos) << o.err;
+}
+
 TEST(FixedJoint, CarriesWeightAndMomentWithTheirSigns) {
   const Case c("joints");
   const std::string scene = text_of(c.source("scene.toml"));
