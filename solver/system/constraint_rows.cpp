@@ -129,6 +129,11 @@ std::string Joints::too_far(const Config& q0, const Config& q1) const {
     const auto turned = [&](const Config& q) { return Mat3(q.R[j.end[0].body].transpose() * q.R[j.end[1].body]); };
     const double turn = std::abs(Eigen::AngleAxisd(Mat3(turned(q0).transpose() * turned(q1))).angle());
     if (turn > most) return fmt::format("joint \"{}\" rolls by {:.2g} rad in one step", j.name, turn);
+    // whole turns are seen by the way of the centre
+    const auto apart = [&](const Config& q) { return Vec3(q.R[j.end[0].body].transpose() * (q.c[j.end[1].body] - q.c[j.end[0].body])); };
+    const double arm = j.velocity_rows->contact(q0.R[j.end[0].body], q0.R[j.end[1].body]).arm.norm(), way = (apart(q1) - apart(q0)).norm();
+    if (j.velocity_rows->n_rows() == 2 && way > 2 * most * arm)
+      return fmt::format("joint \"{}\" rolls by {:.2g} m in one step", j.name, way);
   }
   return {};
 }

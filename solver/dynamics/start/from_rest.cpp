@@ -78,7 +78,7 @@ RestReport come_to_rest(RunParts& run, State& state, const LoadLevel& under) {
   bool stays = false, at_rest = false;  // the last step, where it began; the state, to its tolerance
   bool rolls = false;                   // as far in each step as it may
   bool arrived = !system.moves();       // what moves by a law is where it is to be
-  for (int k = 0; k < most && tau > least; ++k) {
+  for (int k = 0; k < (rolls ? 10 * most : most) && tau > least; ++k) {
     const Residual forces = forces_at_rest(run, under, state.q, state.lambda);  // by what the last step chose
     const auto balanced = [&](const Residual& r) {
       constexpr double rounding = 1e-5;  // a step so short that nothing moves leaves any force
@@ -129,7 +129,7 @@ RestReport come_to_rest(RunParts& run, State& state, const LoadLevel& under) {
     if (at_rest && stays) return report;
     tau = std::min(tau * (rolls ? 1.15 : taken <= easy ? 3 : 1.5), longest);
   }
-  if (report.converged) report.reason = fmt::format("{} steps do not end at rest", most);
+  if (report.converged) report.reason = fmt::format("{} steps do not end at rest", rolls ? 10 * most : most);
   report.ends = report.converged;
   report.converged = false;
   return report;

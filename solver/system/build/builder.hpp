@@ -184,6 +184,8 @@ class Builder {
   /// How what acts on a set or region as a whole, or is measured there, is divided among local nodes; all ranks' sum is one.  Nodes of a
   /// set count alike, those of a region by its mass, so that it means the same at every fidelity.  Collective.
   std::vector<std::pair<int, double>> shares_of(const Found& found) const;
+  /// The same where none may be below zero, as for masses.  Collective.
+  std::vector<std::pair<int, double>> positive_shares_of(const Found& found) const;
   Vec3 centre_of(const std::vector<std::pair<int, double>>& shares) const;
   // entries.cpp
   /// The history of an entry; every one that acts on the system is taken through here, so that its jumps and kinks are known.

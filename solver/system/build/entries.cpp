@@ -59,6 +59,7 @@ void Builder::add_point_masses() {
       add_mass(body, points);
       out_->start.c[found.body] = body.Xc;
     } else {
+      shares = positive_shares_of(found);
       const Vec3 centre = centre_of(shares);
       for (auto& [node, share] : shares) share *= m;
       out_->part<PointMasses>().add(shares, centre);

@@ -107,6 +107,31 @@ std::vector<std::pair<int, double>> Builder::shares_of(const Found& found) const
   return shares;
 }
 
+/// Between mid-side nodes corners have less than nothing of a load.  The former give theirs to the corners at both sides: along straight
+/// edges no centre moves.
+std::vector<std::pair<int, double>> Builder::positive_shares_of(const Found& found) const {
+  const auto shares = shares_of(found);
+  double least = 0;
+  for (const auto& [node, share] : shares) least = std::min(least, share);
+  if (!found.is_region || comm_.max(-least) <= 0) return shares;
+  std::map<int, double> all(shares.begin(), shares.end());
+  const Mesh& mesh = mesh_->mesh;
+  for (const std::int64_t c : cells_of(found.region)) {
+    const ShapeInfo& shape = info(mesh.shape[c]);
+    for (size_t k = 0; shape.n_nodes > shape.n_corners && k < shape.facets.size(); ++k) {
+      const auto nodes = mesh.facet_nodes({c, static_cast<std::int64_t>(k)});
+      const size_t n = nodes.size() / 2;
+      for (size_t i = 0; i < n; ++i)
+        if (const auto mid = all.find(static_cast<int>(nodes[n + i])); mid != all.end()) {
+          const double half = mid->second / 2;
+          all.erase(mid);
+          all[static_cast<int>(nodes[i])] += half, all[static_cast<int>(nodes[(i + 1) % n])] += half;
+        }
+    }
+  }
+  return {all.begin(), all.end()};
+}
+
 Vec3 Builder::centre_of(const std::vector<std::pair<int, double>>& shares) const {
   Vec3 centre = Vec3::Zero();
   for (const auto& [node, share] : shares) centre += share * out_->X[node];

@@ -146,7 +146,7 @@ end = 1e-4
 step = 1e-4
 )");
   for (const char* analysis : {"--set 'time.analysis=\"static\"' ", "--set 'time.start=\"equilibrium\"' "})
-    for (const double F : {1., 7., 28., 60.}) {
+    for (const double F : {1., 7., 28., 2 * 3.14159 * 7, 60., 110.}) {  // one of them a whole turn
       const Results r = c.solved(analysis + fmt::format("--set load.f.force=[{},0,0]", F));
       const auto x = r.history("probe/w");
       EXPECT_NEAR(x(x.rows() - 1, 0) / (F / 70), 1, 6e-4) << analysis << F;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What acts on a region as a whole, or is measured there, means the same at every fidelity and on every mesh.
 
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::whole_region_test {
@@ -90,6 +91,22 @@ TEST_P(WholeRegion, AMassIsSpreadAsItsOwn) {
 INSTANTIATE_TEST_SUITE_P(EveryFidelity, WholeRegion,
                          testing::Combine(testing::Values(Fidelity::rigid, Fidelity::linear, Fidelity::nonlinear), testing::Values(1, 2)),
                          [](const auto& info) { return fmt::format("{}_{}", word(std::get<0>(info.param)), std::get<1>(info.param)); });
+
+// A mass as large as the region makes it twice as dense.  Corners of cells with mid-side nodes had masses below zero, and modes that fall.
+TEST(WholeRegionMass, OfQuadraticCellsIsNowhereNegative) {
+  for (const Shape shape : {Shape::hex20r, Shape::wedge15, Shape::tet10})
+    for (const Fidelity fidelity : {Fidelity::linear, Fidelity::nonlinear}) {
+      double first[2];
+      for (const bool more : {false, true}) {
+        SceneCase c(solid(2e11, 0.3, 7800, "block") + held("xmin") +
+                    (more ? "[[point_mass]]\nname = \"m\"\non = \"block\"\nmass = 78\n" : "") +
+                    "[time]\nanalysis = \"modes\"\nmodes = 4\n");
+        c.use(block_mesh({.shape = shape, .n = {10, 1, 1}, .high = {1, 0.1, 0.1}}), {fidelity});
+        first[more] = c.solved().history("mode")(1, 0);
+      }
+      EXPECT_NEAR(first[1] / first[0], std::sqrt(0.5), 0.01) << info(shape).name << ", " << word(fidelity);
+    }
+}
 
 // Truth: there is no such point on a flexible region, so it is refused.
 TEST(WholeRegionRefused, AMassAtAPointOfAFlexibleRegion) {
