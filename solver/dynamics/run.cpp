@@ -211,7 +211,10 @@ class Run {
     State& state = run_.state;
     if (const auto carry = system.search(state.q, is_static() ? nullptr : &state.v, 0)) run_.follow(*carry);
     if (!is_static() && system.violation(state.q, 0).worst() > 1e-11 * std::max(1.0, system.length)) {
+      const std::vector<Active> rows = active_rows(system);
+      drop_redundant_rows(system, state.q, 0);  // or no correction is determined; the others close with them, or are told
       run_.figures.assembled = assemble_positions(system, *run_.solver, state.q);
+      set_rows(system, rows);
       if (run_.talk) fmt::print(stderr, "start positions changed by up to {:.3g} m to put the joints together\n", run_.figures.assembled);
     }
     const Redundancy& redundancy = run_.redundancy = drop_redundant_rows(system, state.q, 0);

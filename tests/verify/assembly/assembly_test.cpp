@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Start positions that the scene draws apart are put together, velocities follow the drive, and what cannot be put together is named.
+#include <Eigen/Geometry>
+
 #include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
@@ -49,6 +51,20 @@ TEST(Assembly, TurnsAnElasticBeamAsAWhole) {
   const auto u = r.field("displacement", r.steps().front());
   for (size_t i = 0; i < mesh.X.size(); ++i) EXPECT_LT((mesh.X[i] + u[i] - at - R * (mesh.X[i] - at)).norm(), 1e-4) << "node " << i;
   EXPECT_LT(r.history("energy")(0, 1), 1e-9 * 2e9 * 0.0025) << "elastic energy against E V";
+}
+
+/// A door on two hinges, of which one begins at 0.2 rad: five rows are redundant from the start.
+TEST(Assembly, OfRedundantJoints) {
+  const Vec3 axis = Vec3(-0.6, 0.7, 0.3).normalized(), com(0.12, -0.01, 0.27), at = 0.1 * axis;
+  const std::string door =
+      body("door", 2, com, {0.07, 0.07, 0.05}) +
+      axial("revolute", "hinge", "ground", "door", {0, 0, 0}, axis, "angle = 0.2\nhistory = {t = [0, 1], value = [1, 1]}") + probe("door") +
+      in_time(1e-2, 1e-3);
+  const Vec3 exact = Eigen::AngleAxisd(0.2, axis) * com;
+  for (const std::string& more : {std::string(), axial("revolute", "other", "ground", "door", at, axis)}) {
+    SceneCase c(door + more);
+    EXPECT_LT((c.solved().at("probe/door", 0).head<3>() - exact).norm(), 1e-10) << more;
+  }
 }
 
 TEST(Assembly, NamesTheJointThatCannotBeClosed) {
