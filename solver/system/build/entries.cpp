@@ -50,7 +50,8 @@ void Builder::add_point_masses() {
       throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, its nodes share the mass", e.label(), e.text("on")),
                   "name a set of nodes there");
     const bool has_nodes = found.n_global > 0 && !e.has("at");
-    auto shares = has_nodes ? shares_of(found) : std::vector<std::pair<int, double>>{};
+    std::vector<std::pair<int, double>> shares;
+    if (has_nodes) shares = found.body > 0 ? shares_of(found) : positive_shares_of(found);
     if (found.body > 0) {
       Body& body = out_->bodies[found.body];
       std::vector<std::pair<Vec3, double>> points;
@@ -59,7 +60,6 @@ void Builder::add_point_masses() {
       add_mass(body, points);
       out_->start.c[found.body] = body.Xc;
     } else {
-      shares = positive_shares_of(found);
       const Vec3 centre = centre_of(shares);
       for (auto& [node, share] : shares) share *= m;
       out_->part<PointMasses>().add(shares, centre);
