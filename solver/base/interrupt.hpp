@@ -5,7 +5,7 @@
 
 namespace hilo {
 
-/// From now on SIGINT, SIGTERM, SIGHUP and SIGUSR1 are noted, not obeyed; a second one ends the process at once.
+/// From now on SIGINT, SIGTERM, SIGHUP and SIGUSR1 are noted, not obeyed; one that comes more than a second later ends the process.
 void note_signals();
 /// They end the process again, as where nothing was noted: it has nothing more to save.
 void obey_signals();

@@ -53,6 +53,11 @@ TEST_F(Stopped, BySignals) {
   }
 }
 
+TEST_F(Stopped, ByOneSignalThatComesThreeTimes) {  // `timeout` and mpirun signal a process, and then its group
+  const auto o = work.run(in_background + "sleep 0.1; kill -TERM $p; kill -TERM $p; kill -INT $p; kill -TERM $p; wait $p");
+  expect_stopped(o, "SIGTERM");
+}
+
 TEST_F(Stopped, ByAFileBesideTheResults) {
   const auto o = work.run(in_background + "touch STOP; wait $p");
   expect_stopped(o, "the file STOP");
