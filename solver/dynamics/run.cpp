@@ -222,9 +222,9 @@ class Run {
     if (run_.talk && !redundancy.dropped.empty()) {
       fmt::print(stderr, "{} of {} joint rows are redundant; reactions are the minimum-norm share:\n", redundancy.rows - redundancy.rank,
                  redundancy.rows);
-      constexpr size_t shown = 12;
-      for (size_t k = 0; k < std::min(shown, redundancy.dropped.size()); ++k) fmt::print(stderr, "  {}\n", redundancy.dropped[k]);
-      if (redundancy.dropped.size() > shown) fmt::print(stderr, "  and {} more\n", redundancy.dropped.size() - shown);
+      for (const std::string& row : redundancy.dropped) fmt::print(stderr, "  {}\n", row);
+      if (const size_t all = redundancy.rows - redundancy.rank, more = all - redundancy.dropped.size(); more > 0)
+        fmt::print(stderr, "  and {} more\n", more);
     }
     if (!is_static()) warn_of_shared_friction();
     if (run_.talk && redundancy.singular())

@@ -156,7 +156,7 @@ class LightSolver final : public SerialKktSolver {
     if ((!report.ok || rate_ > 1) && factors_->sharpen()) before += report.iterations, report = factor_and_iterate(b, x, tolerance);
     if (!report.ok && is_definite_) {
       if (!indefinite_ || !told_)
-        warn("", fmt::format("{} fails ({}); unsymmetric factors {}", name(), report.message, indefinite_ ? "instead" : "from here on"));
+        warn("", fmt::format("{}: {}; unsymmetric factors {}", name(), report.message, indefinite_ ? "instead" : "from here on"));
       told_ = true;
       if (indefinite_) aside_ = std::move(factors_), waits_ = rest_ = std::min(2 * rest_ + 1, 15);
       factors_ = make_umfpack(), is_definite_ = false;
@@ -186,7 +186,8 @@ class LightSolver final : public SerialKktSolver {
   SolveReport factor_and_iterate(std::span<const double> b, std::span<double> x, double tolerance) {
     ready_ = false;
     if (!factor())
-      return is_definite_ ? SolveReport::failed("not positive definite: the flexible part may be unstable or held by too little")
+      return is_definite_ ? SolveReport::failed(
+                                "the stiffness is not positive definite for now, as of a part that is unstable or held by contact alone")
                           : SolveReport::singular();
     const SolveReport report = iterate(b, x, tolerance, 60);
     rate_ = report.iterations / -std::log10(std::clamp(report.residual, 1e-12, 0.5));

@@ -153,7 +153,7 @@ with tempfile.TemporaryDirectory() as folder:
     write(scene().replace('b = "b0"', 'b = "b"'))
     advice = told("mesh.h5", "--tol", "2%", "--keep", "a=linear", "--keep-rigid", "c")
     assert levels(advice) == {"a": "linear", "b": "rigid", "c": "rigid"}, advice["regions"]
-    assert {r["region"]: r["why"] for r in advice["regions"]}["b"] == "a joint or spring names it as a whole", advice["regions"]
+    assert {r["region"]: r["why"] for r in advice["regions"]}["b"] == "a joint, spring, load or mass takes it as one body", advice["regions"]
     write(scene())
 
     # where cells are needed and one bar of them is enough, all cells run at twice the step alone; what is chosen serves

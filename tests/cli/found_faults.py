@@ -197,6 +197,9 @@ def ends_of_beams_are_moved():
     assert abs(way[2] / u - 1) < 1e-9 and abs(max(forces) / (3 * 2.1e11 * I * u) - 1) < 1e-4, (way, forces)
     write("deck.bdf", *NASTRAN, held, f"SPC,1,2,34,{u}", "ENDDATA")
     assert "moved and turned" in run("hilo-import", "--quiet", "deck.bdf", "-o", "mesh.h5", "--scene-out", "scene.toml", exit=2)
+    write("deck.bdf", *NASTRAN, "SPC1,1,3,2", f"SPCD,1,2,3,{u}", f"SPCD,1,2,3,{2 * u}", "ENDDATA")
+    told = run("hilo-import", "deck.bdf", "-o", "mesh.h5", "--scene-out", "scene.toml")
+    assert "SPCD of a component that another one drives: the last holds" in told, told
 
 
 def scaled_beams():

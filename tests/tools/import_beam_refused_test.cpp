@@ -38,6 +38,12 @@ TEST_F(ImportBeam, WhatABarOfBdfCannotCarryIsRefusedOrTold) {
                     "1.,2.-3,8.-7,2.-7,,4.-7\n",
                 "--scene-out f.toml");
   expect_said("not read: PBEAM with stations between its ends: it varies evenly from end to end");
+  imported_deck("h.bdf",
+                grids +
+                    "CBEAM,1,5,1,2,0.,1.,0.\nPBEAM,5,1,1.-3,4.-7,1.-7,,2.-7,,+\n+,,,,,,,,,+\n+,NO,.5,,,,,,,+\n+,NO,1.,2.-3,8.-7,2.-7,,"
+                    "4.-7\n",
+                "--scene-out h.toml");
+  EXPECT_EQ(err.find("not read"), err.npos) << "blank between the ends is what lies evenly between them\n" << err;
   imported_deck("g.bdf", grids + "CBEAM,1,5,1,2,0.,1.,0.\nPBEAML,5,1,,BAR,,,,,+\n+,.1,.1,0.,YES,.5,.1,.1,0.,+\n+,YES,1.,.05,.05,0.\n",
                 "--scene-out g.toml");
   expect_said("not read: PBEAML with stations between its ends: it varies evenly from end to end");

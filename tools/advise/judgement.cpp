@@ -89,7 +89,7 @@ bool Judgement::mend(const Candidate& c, Assignment& levels) {
     const auto says = [&](const char* text) { return c.failure.find('"' + name + text) != std::string::npos; };
     const bool whole = says("\" is flexible") || says("\" is a linear region: it has no single position"), stop = says("\" is not rigid");
     if (!whole && !stop) continue;
-    const char* why = whole ? "a joint or spring names it as a whole" : "a contact gives its stiffness as that of a rigid part";
+    const char* why = whole ? "a joint, spring, load or mass takes it as one body" : "a contact gives its stiffness as that of a rigid part";
     a.kept_rigid[r] = why;
     if (o.kept.contains(r) && o.kept.at(r) != Level::rigid)
       throw Error("--keep", fmt::format("\"{}\" cannot be {}: {}", name, word(o.kept.at(r)), why),

@@ -3,6 +3,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <queue>
@@ -18,20 +19,29 @@ using ColumnEntry = Eigen::SparseMatrix<double>::InnerIterator;
 using Column = std::vector<std::pair<int, double>>;
 
 constexpr Eigen::Index dense_at_most = 48, dense_in_doubt = 600;  // columns
-constexpr double nothing = 1e-13;                                 // of a factor: round-off
+constexpr double nothing = 1e-13, little = 1e-6;                  // of a factor: round-off, and what bears a column
+constexpr size_t many = 1'000'000;                                // factors, 16 MB of them
+
+void take(Independence& out, const Column& factors) {
+  for (const auto& [i, value] : factors) {
+    out.largest = std::max(out.largest, std::abs(value));
+    if (std::abs(value) > little) out.bears[i] = 1;
+  }
+}
 
 Independence by_dense_qr(const Eigen::MatrixXd& A, double dependent) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A.rows(), A.cols());
   qr.setThreshold(dependent);
   qr.compute(A);
   const Eigen::Index rank = qr.rank();
-  Independence out{qr.colsPermutation().indices(), rank, {}};
+  Independence out{qr.colsPermutation().indices(), rank, {}, std::vector<char>(rank, 0)};
   Eigen::MatrixXd factors = qr.matrixQR().topRightCorner(rank, A.cols() - rank);
   if (factors.size() > 0) qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solveInPlace(factors);
   for (Eigen::Index k = 0; k < factors.cols(); ++k) {
     out.depends.emplace_back();
     for (Eigen::Index i = 0; i < rank; ++i)
       if (std::abs(factors(i, k)) > nothing) out.depends.back().emplace_back(static_cast<int>(i), factors(i, k));
+    take(out, out.depends.back());
   }
   return out;
 }
@@ -43,9 +53,9 @@ double least_pivot(const SparseQr& qr) {
   return least;
 }
 
-/// Factors by R x = b, over the entries that b reaches alone.
-Independence from(const SparseQr& qr) {
-  Independence out{qr.order, qr.rank, {}};
+/// Factors by R x = b, over the entries that b reaches alone; lists of columns until there are `most` factors.
+Independence from(const SparseQr& qr, size_t most) {
+  Independence out{qr.order, qr.rank, {}, std::vector<char>(qr.rank, 0)};
   std::vector<double> x(static_cast<size_t>(qr.rank), 0.0);
   std::vector<char> is_met(x.size(), 0);
   std::priority_queue<int> next;
@@ -53,8 +63,10 @@ Independence from(const SparseQr& qr) {
     if (!is_met[i]) is_met[i] = 1, next.push(i);
     x[i] += value;
   };
+  Column factors;
+  size_t n_factors = 0;
   for (Eigen::Index k = qr.rank; k < qr.R.cols(); ++k) {
-    Column& factors = out.depends.emplace_back();
+    factors.clear();
     for (ColumnEntry it(qr.R, k); it; ++it) add(static_cast<int>(it.row()), it.value());
     while (!next.empty()) {
       const int j = next.top();
@@ -68,23 +80,22 @@ Independence from(const SparseQr& qr) {
       }
       x[j] = 0, is_met[j] = 0;
     }
-    std::reverse(factors.begin(), factors.end());
+    take(out, factors);
+    if (n_factors += factors.size(); n_factors <= most || out.depends.empty()) out.depends.emplace_back(factors.rbegin(), factors.rend());
   }
   return out;
 }
+
+/// Nets have a factor for each joint around a mesh or within it: what a few of ten cost in digits is not worth maps of them all.
+constexpr double most_in_nets = 10;
 
 /// Exchanges of a column for one that depends on it, until no factor is far above one: what the motion leaves of the others' rows is
 /// round-off times these factors.  Each enlarges the volume of those kept.
 void exchange(Independence& found) {
   size_t n_factors = 0;
-  double largest = 0;
-  for (const Column& column : found.depends) {
-    n_factors += column.size();
-    for (const auto& [i, value] : column) largest = std::max(largest, std::abs(value));
-  }
-  // Nets have a factor for each joint around a mesh or within it: what a few of ten cost in digits is not worth maps of them all.
-  const double enough = n_factors > 100000 ? 10 : 1.01;
-  if (largest < enough) return;
+  for (const Column& column : found.depends) n_factors += column.size();
+  const double enough = n_factors > 100000 ? most_in_nets : 1.01;
+  if (found.largest < enough) return;
   std::vector<std::map<int, double>> columns;  // of factors, and which columns have one at a place
   std::vector<std::set<int>> places(static_cast<size_t>(found.rank));
   for (size_t k = 0; k < found.depends.size(); ++k) {
@@ -126,7 +137,12 @@ void exchange(Independence& found) {
     for (auto& [j, value] : columns[k]) value /= -pivot;
     columns[k][i] = 1 / pivot;
   }
-  for (size_t k = 0; any && k < columns.size(); ++k) found.depends[k].assign(columns[k].begin(), columns[k].end());
+  if (!any) return;
+  found.largest = 0, found.bears.assign(found.bears.size(), 0);
+  for (size_t k = 0; k < columns.size(); ++k) {
+    found.depends[k].assign(columns[k].begin(), columns[k].end());
+    take(found, found.depends[k]);
+  }
 }
 
 /// By dense QR with column pivoting where there are few; by sparse QR in the order of least fill, unless its last pivots leave doubt,
@@ -138,7 +154,8 @@ Independence among(const Eigen::SparseMatrix<double>& A, double dependent) {
   } else {
     const SparseQr qr = sparse_qr(A, dependent, ColumnOrder::least_fill);
     const bool in_doubt = least_pivot(qr) < 1e3 * dependent;
-    out = in_doubt && A.cols() <= dense_in_doubt ? by_dense_qr(Eigen::MatrixXd(A), dependent) : from(qr);
+    out = in_doubt && A.cols() <= dense_in_doubt ? by_dense_qr(Eigen::MatrixXd(A), dependent) : from(qr, many);
+    if (out.largest >= most_in_nets && out.rank + static_cast<Eigen::Index>(out.depends.size()) < A.cols()) out = from(qr, SIZE_MAX);
   }
   exchange(out);
   return out;
@@ -159,7 +176,7 @@ Independence independent_columns(const Eigen::SparseMatrix<double>& A, Eigen::In
     for (ColumnEntry it(A, order[k]); it; ++it) entries.emplace_back(it.row(), k, it.value());
   Eigen::SparseMatrix<double> sorted(A.rows(), order.size());
   sorted.setFromTriplets(entries.begin(), entries.end());
-  Independence out = from(sparse_qr(sorted, dependent, ColumnOrder::given));
+  Independence out = from(sparse_qr(sorted, dependent, ColumnOrder::given), SIZE_MAX);
   std::vector<int> place(static_cast<size_t>(order.size()));  // of each of these columns in the new order
   for (Eigen::Index k = 0; k < order.size(); ++k) place[out.order[k]] = static_cast<int>(k);
   for (int& k : out.order) k = order[k];
@@ -170,6 +187,8 @@ Independence independent_columns(const Eigen::SparseMatrix<double>& A, Eigen::In
     for (auto& [i, value] : factors) i = place[i];
     out.depends.push_back(std::move(factors));
   }
+  for (Eigen::Index i = 0; i < first.rank; ++i)
+    if (first.bears[i]) out.bears[place[i]] = 1;
   return out;
 }
 

@@ -8,11 +8,13 @@
 namespace hilo {
 
 /// Columns of a matrix sorted: `rank` independent ones come first.  Column rank + k is these times depends[k]: their places in the order,
-/// and factors.
+/// and factors.  Of nets with many millions of factors the first columns alone have a list.
 struct Independence {
   Eigen::VectorXi order;
   Eigen::Index rank = 0;
   std::vector<std::vector<std::pair<int, double>>> depends;
+  std::vector<char> bears;  // of each of the `rank`: some column depends on it, by a factor above 1e-6
+  double largest = 0;       // factor
 };
 
 /// Independent columns, the first `n_plain` before the others, which are rows of drives: one of those is kept only where the joints leave

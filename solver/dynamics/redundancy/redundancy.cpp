@@ -25,7 +25,7 @@ bool is_drive(const System& system, std::pair<int, int> row) { return system.con
 
 enum class Rows { all, active, plain };  // plain: all but those of drives
 
-UnitRows unit_rows(const System& system, const Config& q, Rows which) {
+UnitRows unit_rows(const System& system, const Config& q, Rows which, bool norms_alone = false) {
   UnitRows out;
   std::vector<Eigen::Triplet<double>> entries;
   const auto constraints = system.constraints();
@@ -37,7 +37,7 @@ UnitRows unit_rows(const System& system, const Config& q, Rows which) {
       if (which == Rows::active && !c.active()[r]) continue;
       if (which == Rows::plain && c.is_driven(r)) continue;
       const double norm = G.row(r).norm();
-      for (Eigen::Index i = 0; i < G.cols(); ++i)
+      for (Eigen::Index i = 0; i < G.cols() && !norms_alone; ++i)
         if (const double x = norm > 0 ? G(r, i) / norm : 0; std::abs(x) > 1e-14)
           entries.emplace_back(3 * blocks[i / 3] + static_cast<int>(i % 3), static_cast<int>(out.rows.size()), x);
       out.rows.emplace_back(static_cast<int>(j), r), out.norm.push_back(norm);
@@ -77,6 +77,12 @@ Redundancy choose_rows(System& system, const Config& q, double dependent) {
     const Eigen::SparseMatrix<double> own = part_of(all.A, group, number);
     const Independence found = independent_columns(own, n_plain, dependent);
     report.rank += static_cast<int>(found.rank);
+    const auto place = [&](Eigen::Index k) {
+      const auto [one, r] = all.rows[group[found.order[k]]];
+      return constraints[one]->row() + r;
+    };
+    for (Eigen::Index k = 0; k < found.rank; ++k)
+      if (found.bears[k]) report.undetermined.push_back(place(k));
     for (Eigen::Index k = found.rank; k < own.cols(); ++k) {
       const auto row = all.rows[group[found.order[k]]];
       const auto [one, r] = row;
@@ -84,22 +90,24 @@ Redundancy choose_rows(System& system, const Config& q, double dependent) {
       Active active = c.active();
       active[r] = false;
       c.set_active(active);
-      report.undetermined.push_back(c.row() + r);
+      report.undetermined.push_back(place(k));
+      const bool drives = is_drive(system, row), is_told = report.dropped.size() < Redundancy::told;
+      const auto k_list = static_cast<size_t>(k - found.rank);
+      if ((!drives && !is_told) || k_list >= found.depends.size()) continue;
       std::vector<int> others;
-      const bool drives = is_drive(system, row);
       bool on_drives = false;
-      for (const auto& [i, factor] : found.depends[k - found.rank]) {
+      for (const auto& [i, factor] : found.depends[k_list]) {
         if (std::abs(factor) <= 1e-6) continue;
         const auto other = all.rows[group[found.order[i]]];
-        report.undetermined.push_back(constraints[other.first]->row() + other.second);
         if (other.first != one) others.push_back(other.first);
         on_drives = on_drives || (drives && is_drive(system, other));
       }
       const std::string names = names_of(system, others);
       if (drives && !on_drives) report.held.push_back({one, names});
-      report.dropped.push_back(fmt::format(
-          "{} row {}{}", c.label(), r + 1,
-          others.empty() ? fmt::format(" (depends on the {}'s own rows)", c.section()) : fmt::format(" (depends on {})", names)));
+      if (is_told)
+        report.dropped.push_back(fmt::format(
+            "{} row {}{}", c.label(), r + 1,
+            others.empty() ? fmt::format(" (depends on the {}'s own rows)", c.section()) : fmt::format(" (depends on {})", names)));
     }
   }
   std::ranges::sort(report.undetermined);
@@ -132,7 +140,7 @@ class Nearest {
  public:
   static constexpr double mu = 1e-10;  // far below the square of `aside`, which rows that are independent beside q alone have
   bool factor(Eigen::SparseMatrix<double> A) {
-    A_ = std::move(A), through_.resize(0);
+    A_ = std::move(A), plane_.resize(0);
     Eigen::SparseMatrix<double> K = A_ * Eigen::SparseMatrix<double>(A_.transpose()), I(K.rows(), K.cols());
     I.setIdentity();
     K += mu * I;
@@ -142,7 +150,7 @@ class Nearest {
   Eigen::VectorXd left_of(const Eigen::VectorXd& y) const { return mu * factors_.solve(y); }
   /// A (A^T A)^-1 b, without what leaves the plane of this normal.
   Eigen::VectorXd within(const Eigen::VectorXd& plane, const Eigen::VectorXd& b) {
-    if (through_.size() == 0) through_ = factors_.solve(plane);
+    if (plane_.size() != plane.size() || plane != plane_) plane_ = plane, through_ = factors_.solve(plane);
     const Eigen::VectorXd y = factors_.solve(A_ * b);
     return y - plane.dot(y) / (1 + plane.dot(through_)) * through_;
   }
@@ -150,7 +158,7 @@ class Nearest {
  private:
   Eigen::SparseMatrix<double> A_;
   SparseCholesky factors_;
-  Eigen::VectorXd through_;  // the plane's normal through the factors
+  Eigen::VectorXd plane_, through_;  // the normal of the last plane, and that through the factors
 };
 
 constexpr double round_off = 1e-9;  // what others leave of a unit row that depends on them
@@ -158,45 +166,61 @@ constexpr double aside = 1e-3;      // how far to look, over the scene's length
 const double independent_beside =
     std::pow(aside, 1.5);  // what others leave there of a unit row that depends on them at q alone is about `aside`
 
-/// A pose beside q that these rows allow, along the part of `direction` that they leave; nothing where they leave none or do not close.
-/// The increments that close them stay in the plane `far` ahead, or branches would draw them back to q, where all of them meet.
-std::optional<Config> beside(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far, Rows rows) {
-  constexpr int iterations = 40;
-  UnitRows unit = unit_rows(system, q, rows);
-  Nearest nearest;
-  if (!nearest.factor(std::move(unit.A))) return {};
-  Eigen::VectorXd y = nearest.left_of(direction);
-  if (!(y.norm() > 1e-6 * direction.norm())) return {};
-  y *= far * system.length / y.cwiseAbs().maxCoeff();
-  const Eigen::VectorXd plane = y.normalized();
-  Config out = q;
-  displace(system, out, y);
-  double last = 0;  // gap of the pose before
-  for (int k = 0;; ++k) {
-    unit = unit_rows(system, out, rows);
-    const Eigen::VectorXd g = gaps(system, unit, out, t);
-    const double gap = g.size() > 0 ? g.cwiseAbs().maxCoeff() : 0;
-    if (gap < (k < iterations ? 1e-14 : 1e-12) * system.length) return out;
-    if (k == iterations) return {};
-    // Rows of a pose before close the gap too, where they are not about to become dependent: a factor is dear in large nets.
-    Eigen::VectorXd back;
-    const bool closes = k == 0 || gap < 0.5 * last;
-    if (closes) back = nearest.within(plane, g);
-    if (!closes || back.cwiseAbs().maxCoeff() > far * system.length) {
-      if (!nearest.factor(std::move(unit.A))) return {};
-      back = nearest.within(plane, g);
+/// Poses beside q that these rows allow.
+class Beside {
+ public:
+  Beside(const System& system, const Config& q, double t, Rows rows) : system_(system), q_(q), t_(t), rows_(rows) {}
+  /// That along the part of `direction` that they leave; nothing where they leave none or do not close.  The increments that close them
+  /// stay in the plane `far` ahead, or branches would draw them back to q, where all of them meet.
+  std::optional<Config> operator()(const Eigen::VectorXd& direction, double far) {
+    constexpr int iterations = 40;
+    if (!at_q_ && !factor(q_)) return {};
+    at_q_ = true;
+    Eigen::VectorXd y = nearest_.left_of(direction);
+    if (!(y.norm() > 1e-6 * direction.norm())) return {};
+    y *= far * system_.length / y.cwiseAbs().maxCoeff();
+    const Eigen::VectorXd plane = y.normalized();
+    Config out = q_;
+    displace(system_, out, y);
+    double last = 0;  // gap of the pose before
+    for (int k = 0;; ++k) {
+      const Eigen::VectorXd g = gaps(system_, unit_, out, t_);
+      const double gap = g.size() > 0 ? g.cwiseAbs().maxCoeff() : 0;
+      if (gap < (k < iterations ? 1e-14 : 1e-12) * system_.length) return out;
+      if (k == iterations) return {};
+      // Rows of a pose before close the gap too, where they are not about to become dependent: a factor is dear in large nets.
+      Eigen::VectorXd back;
+      const bool closes = k == 0 || gap < 0.5 * last;
+      if (closes) back = nearest_.within(plane, g);
+      if (!closes || back.cwiseAbs().maxCoeff() > far * system_.length) {
+        if (at_q_ = false; !factor(out)) return {};
+        back = nearest_.within(plane, g);
+      }
+      displace(system_, out, -back);
+      last = gap;
     }
-    displace(system, out, -back);
-    last = gap;
   }
-}
+
+ private:
+  bool factor(const Config& at) {
+    unit_ = unit_rows(system_, at, rows_);
+    return nearest_.factor(std::move(unit_.A));
+  }
+  const System& system_;
+  const Config& q_;
+  double t_;
+  Rows rows_;
+  UnitRows unit_;  // where the factors are
+  Nearest nearest_;
+  bool at_q_ = false;
+};
 
 /// Largest move of a node or centre, and turn times the scene's length, between two poses.
 double way(const System& system, const Config& a, const Config& b) { return system.largest_difference(a, b, std::sqrt(2) * system.length); }
 
 /// A pose beside q that all rows but those of drives allow; nothing where they lead back.
 std::optional<Config> branch(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far) {
-  std::optional<Config> out = beside(system, q, direction, t, far, Rows::plain);
+  std::optional<Config> out = Beside(system, q, t, Rows::plain)(direction, far);
   if (out && way(system, q, *out) < 0.1 * far * system.length) out.reset();
   return out;
 }
@@ -232,11 +256,12 @@ Redundancy drop_redundant_rows(System& system, const Config& q, double t) {
   // Rows that depend on others at q alone open with the square of the way aside, redundant ones do not.  A branch that closes all of them
   // tells which are independent along it: more than at q, and fewer than at any pose off the branches.
   const std::vector<Active> at_pose = active_rows(system);
+  Beside beside(system, q, t, Rows::active);
   for (unsigned seed = 1; seed <= 2; ++seed) {
     const Eigen::VectorXd direction = some_direction(system, seed);
-    std::optional<Config> near = beside(system, q, direction, t, aside, Rows::active);
+    std::optional<Config> near = beside(direction, aside);
     if (!near) break;
-    const UnitRows all = unit_rows(system, *near, Rows::all);
+    const UnitRows all = unit_rows(system, *near, Rows::all, true);
     const Eigen::VectorXd g = gaps(system, all, *near, t);
     if (g.cwiseAbs().maxCoeff() < 1e-4 * aside * aside * system.length) continue;
     if (const auto pose = branch(system, q, direction, t, aside)) near = pose;

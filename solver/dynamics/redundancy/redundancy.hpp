@@ -12,7 +12,8 @@ namespace hilo {
 /// What the rank check found.
 struct Redundancy {
   int rows = 0, rank = 0;
-  std::vector<std::string> dropped;  // "joint \"b\" row 3 (depends on joints a, c)"
+  static constexpr size_t told = 12;
+  std::vector<std::string> dropped;  // "joint \"b\" row 3 (depends on joints a, c)", of the first `told` rows
   struct Held {
     int constraint;
     std::string by;  // those that leave its drive nothing to drive

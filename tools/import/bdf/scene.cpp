@@ -195,6 +195,7 @@ void BdfScene::hold() {
           held_[a->second].hold(s.components, s.value, s.place);
       }
   }
+  std::map<std::int64_t, unsigned> driven;  // components by row
   for (const auto& [factor, l] : loads_) {
     if (l->kind != BdfLoad::Kind::displacement) continue;
     const auto h = held_.find(row(l->grid, l->place, "SPCD"));
@@ -202,6 +203,10 @@ void BdfScene::hold() {
       in_.skip("SPCD of a component that no SPC holds", l->place);
       continue;
     }
+    if (auto& bits = driven[h->first]; bits & l->components)
+      in_.skip("SPCD of a component that another one drives: the last holds", l->place);
+    else
+      bits |= l->components;
     h->second.hold(l->components, factor * l->size, l->place);
   }
 }

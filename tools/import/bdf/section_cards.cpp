@@ -55,9 +55,9 @@ void read_pbeam(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   size_t line = is_station(8) ? 8 : 16;
   std::vector<std::pair<double, std::array<double, 6>>> stations;  // X/XB, and the section there
   for (; is_station(line); line += word(line) == "YES" ? 16 : 8) {
-    auto& there = stations.emplace_back(d.number(line + 1), at_a).second;
-    for (size_t i = 0; i < 6; ++i) there[i] = d.number(line + 2 + i, at_a[i]);
-    if (stations.back().first == 1) at_b = there;
+    auto& [x, there] = stations.emplace_back(d.number(line + 1), at_a);
+    for (size_t i = 0; i < 6; ++i) there[i] = d.number(line + 2 + i, x == 1 ? at_a[i] : std::nan(""));  // blank between: even
+    if (x == 1) at_b = there;
   }
   check_even(stations, at_a, at_b, "PBEAM", d.place(), in);
   const auto section = [&](const std::array<double, 6>& v) {
