@@ -60,7 +60,7 @@ void check(Request& r) {
   }
   if (o.scale <= 0) usage("--scale must be positive");
   if (o.order != 1 && o.order != 2) usage("--order is 1 or 2");
-  if (o.merge && *o.merge <= 0) usage("--merge-nodes must be positive");
+  if (o.merge && !(*o.merge > 0)) usage("--merge-nodes must be positive");
   if (o.size && *o.size <= 0) usage("--size must be positive");
   for (const auto& [name, t] : o.thickness)
     if (!(t > 0)) usage("--thickness must be positive");

@@ -59,8 +59,11 @@ TEST_F(ImportInpContact, LawsOfOtherProgramsAreTold) {
   const std::string pair = "*CONTACT PAIR, INTERACTION=dry\nunder, table\n*SURFACE INTERACTION, NAME=dry\n";
   EXPECT_NE(scene(pair + "*FRICTION, ROUGH\n").find("friction = 5"), std::string::npos);
   expect_said("becomes 5");
-  scene(pair + "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1e7\n");
+  EXPECT_NE(scene(pair + "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1e7\n").find("loss = \"other\""), std::string::npos)
+      << "the run says so too";
   expect_said("hilo's own");
+  EXPECT_NE(scene("*CONTACT PAIR, ADJUST=.1, INTERACTION=dry\nunder, table\n*SURFACE INTERACTION, NAME=dry\n").find("loss = \"other\""),
+            std::string::npos);
   EXPECT_NE(scene(pair + "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1e7\n").find("[[tie]]"), std::string::npos);
   const std::string both = scene("*CONTACT PAIR, INTERACTION=dry\nunder, table\ntable, under\n*SURFACE INTERACTION, NAME=dry\n");
   EXPECT_EQ(both.find("[[contact]]"), both.rfind("[[contact]]")) << "points of both meet the other anyhow";

@@ -96,6 +96,14 @@ TEST_F(ImportInpSteps, CentrifAboutAnotherAxisIsTold) {
   }
 }
 
+// Truth: CalculiX takes the first line that turns an element.
+TEST_F(ImportInpSteps, CentrifOfOverlappingSetsIsTold) {
+  solve(bar + statics + "*DLOAD\nbar, CENTRIF, 1., 0., 0., 0., 0., 0., 1.\n2, CENTRIF, 3., 0., 0., 0., 0., 0., 1.\n" + end, "a.inp", "",
+        "--accept-left-out");
+  EXPECT_NEAR(foot({1}).at(0), -2000, 1e-6);
+  expect_said("*DLOAD CENTRIF on elements that one before it turns");
+}
+
 // Truth: CalculiX takes (w/2 pi)^2 off the squares of frequencies in the plane of rotation; ours stay, and a line says so.
 TEST_F(ImportInpSteps, SpinSofteningIsTold) {
   imported_deck("a.inp",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <regex>
 
 #include "import_case.hpp"
 #include "model/block.hpp"
@@ -327,6 +328,32 @@ TEST_F(ImportInp, ZippedDecksAreReadAsTheyAre) {
   place.write("a.inp", two_cubes);
   ASSERT_EQ(place.run("gzip a.inp").exit, 0);
   EXPECT_EQ(imported("a.inp.gz", "--rest all").n_cells(), 2);
+}
+
+TEST_F(ImportInp, DataLinesMayStandInAFileOfTheirOwn) {
+  const std::string head = "*NODE, NSET=all", cells = "*ELEMENT, TYPE=C3D8, ELSET=a", held = "*NSET, NSET=held",
+                    steel = "*MATERIAL, NAME=m\n*ELASTIC\n2e11, .3\n*SOLID SECTION, ELSET=a, MATERIAL=m\n",
+                    step = "*STEP\n*STATIC\n*BOUNDARY\nheld, 1, 3\n*CLOAD";
+  const std::string nodes = "1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n", cell = "1,1,2,3,4,5,6,7,8\n",
+                    foot = "1,2,3,4\n", push = "7,1,5.\n", end = "*END STEP\n";
+  Mesh mesh;
+  const auto scene = [&](const std::string& text) {
+    mesh = imported_deck("a.inp", text, "--scene-out s.toml");
+    return std::regex_replace(test::text_of(place / "s.toml"), std::regex("# .*:[0-9]+"), "");  // without places
+  };
+  const std::string whole = scene(head + '\n' + nodes + cells + '\n' + cell + held + '\n' + foot + steel + step + '\n' + push + end);
+  const auto X = mesh.X;
+  place.write("n.txt", nodes), place.write("c.txt", cell), place.write("f.txt", foot), place.write("p.txt", push);
+  EXPECT_EQ(scene(head + ", INPUT=n.txt\n" + cells + ", INPUT=c.txt\n" + held + ", INPUT=f.txt\n" + steel + step + ", INPUT=p.txt\n" + end),
+            whole);
+  EXPECT_EQ(mesh.X, X);
+  refused_deck("b.inp", head + ", INPUT=none.txt\n", "-o b.h5", 2, "b.inp:1: no file \"none.txt\"");
+}
+
+TEST_F(ImportInp, LinesOfEmptySetsAreTold) {
+  imported_deck("a.inp", two_cubes + "*NSET, NSET=none\n*ELSET, ELSET=nil\n*BOUNDARY\nnone, 1\n*CLOAD\nnone, 1, 3.\n*DLOAD\nnil, P1, 3.\n",
+                "--rest all --scene-out s.toml");
+  for (const char* card : {"*BOUNDARY", "*CLOAD", "*DLOAD"}) expect_said(std::string("not read: ") + card + " on an empty set");
 }
 
 TEST_F(ImportInp, WrongDecksAreNamedByLineAndColumnAndLeaveNothing) {

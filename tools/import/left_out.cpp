@@ -33,7 +33,9 @@ const std::vector<Loss>& losses() {
        {"*ELASTIC", "*PLASTIC", "*RATE DEPENDENT", "*HYPERELASTIC", "*ORIENTATION", "*CREEP", "*CYCLIC HARDENING",
         "*DEFORMATION PLASTICITY", "*DRUCKER PRAGER", "*MOHR COULOMB", "*VISCOELASTIC", "*HYPERFOAM", "*USER MATERIAL", "*POTENTIAL",
         "*EXPANSION", "*DAMPING", "*MODAL DAMPING", "*MATERIAL"}},
-      {"other", {"*BOUNDARY on degree of freedom", "*CONTACT DAMPING", "*CONTACT CONTROLS"}},
+      {"other",
+       {"*BOUNDARY on degree of freedom", "*CONTACT DAMPING", "*CONTACT CONTROLS", "*CONTACT PAIR, ADJUST",
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE"}},
       {"", {"*NODE: the same node again", "*STATIC", "*GAP CONDUCTANCE", "*GAP HEAT GENERATION"}},
       // Nastran
       {"load", {"FORCE",  "FORCE1", "FORCE2", "MOMENT", "MOMENT1", "MOMENT2", "GRAV",   "ACCEL",  "ACCEL1",

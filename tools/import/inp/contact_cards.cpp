@@ -25,8 +25,7 @@ void read_contact_pair(InpReading& r) {
     c.slave = upper(l.text(0)), c.master = l.empty(1) ? c.slave : upper(l.text(1));
     c.interaction = upper(r.card.value("INTERACTION"));
     if (c.slave.empty()) throw Error(l.place(0), "*CONTACT PAIR: two surfaces are expected", "SLAVE, MASTER");
-    if (r.card.has("ADJUST"))
-      r.in.notes.push_back(fmt::format("{}: *CONTACT PAIR, ADJUST: gaps and overlaps of the mesh stay as they are", r.card.place()));
+    if (r.card.has("ADJUST")) r.in.skip("*CONTACT PAIR, ADJUST: gaps and overlaps of the mesh stay as they are", r.card.place());
     if (r.card.has("SMALLSLIDING"))
       r.in.notes.push_back(fmt::format("{}: *CONTACT PAIR, SMALL SLIDING: surfaces may slide as far as they do", r.card.place()));
     r.deck.contacts.push_back(std::move(c));

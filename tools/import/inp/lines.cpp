@@ -69,17 +69,11 @@ void InpLines::open(const std::string& path, const std::string& place) {
   kept_.push_back(s);
 }
 
-void InpLines::include(std::string_view line, const std::string& place) {
+void InpLines::include(const std::string& name, const std::string& card, const std::string& place) {
   namespace fs = std::filesystem;
-  std::vector<DataField> fields;
-  cut(line, fields);
-  std::string name;
-  for (const auto& f : fields)
-    if (const auto eq = f.text.find('='); eq != std::string_view::npos && upper(f.text.substr(0, eq)) == "INPUT")
-      name = unquote(strip(f.text.substr(eq + 1)));
-  if (name.empty()) throw Error(place + ":1", "*INCLUDE lacks INPUT=");
+  if (name.empty()) throw Error(place + ":1", fmt::format("{} lacks INPUT=", card));
   if (stack_.size() > 20)
-    throw Error(place, fmt::format("*INCLUDE nested more than 20 deep at \"{}\"", name), "does a file include itself?");
+    throw Error(place, fmt::format("{} nested more than 20 deep at \"{}\"", card, name), "does a file include itself?");
   const fs::path p = fs::path(name).is_absolute() ? fs::path(name) : fs::path(folder_) / name;
   open(p.string(), place);
 }
@@ -104,7 +98,13 @@ bool InpLines::next_line(std::string_view& line) {
     const auto bare = strip(line);
     if (bare.empty() || bare.substr(0, 2) == "**") continue;
     if (bare.size() > 8 && bare.front() == '*' && upper(bare.substr(0, 8)) == "*INCLUDE") {
-      include(bare, fmt::format("{}:{}", *s.path, s.line));
+      std::vector<DataField> fields;
+      cut(bare, fields);
+      std::string name;
+      for (const auto& f : fields)
+        if (const auto eq = f.text.find('='); eq != std::string_view::npos && upper(f.text.substr(0, eq)) == "INPUT")
+          name = unquote(strip(f.text.substr(eq + 1)));
+      include(name, "*INCLUDE", fmt::format("{}:{}", *s.path, s.line));
       continue;
     }
     if (!values_.empty()) put_values(line);
@@ -125,12 +125,15 @@ int InpLines::count(std::string_view word) const {
 
 InpLines::Mark InpLines::mark() const { return {stack_.back()}; }
 
+void InpLines::give_back() {
+  if (!ahead_) return;
+  Source& s = stack_.back();
+  s.at = s.line_at, --s.line;
+  ahead_.reset();
+}
+
 void InpLines::read_again(const Mark& from) {
-  if (ahead_) {  // it is read once more when this is done
-    Source& s = stack_.back();
-    s.at = s.line_at, --s.line;
-    ahead_.reset();
-  }
+  give_back();
   stack_.push_back(from.source);
 }
 
@@ -235,6 +238,11 @@ bool InpLines::next_card(Card& card) {
       ahead_ = line;
       break;
     }
+  }
+  if (card.key != "SUBMODEL" && card.has("INPUT")) {  // the file of its data lines; of results there
+    give_back();
+    include(card.need("INPUT"), card.name, card.place());
+    card.params.erase("INPUT");
   }
   return true;
 }

@@ -46,7 +46,7 @@ struct Card {
 /// A text without the quotes about it.
 std::string_view unquote(std::string_view text);
 
-/// Reads a deck card by card, line by line; *INCLUDE is followed in place.  Plain or gzip text.
+/// Reads a deck card by card, line by line; *INCLUDE, and INPUT= of a card, are followed in place.  Plain or gzip text.
 class InpLines {
  public:
   explicit InpLines(const std::string& path);
@@ -85,8 +85,10 @@ class InpLines {
   void count_unread();
   void put_values(std::string_view& line);
   void open(const std::string& path, const std::string& place);
-  /// Goes on with the file that an *INCLUDE line names, seen from the folder of the deck, then returns to this one.
-  void include(std::string_view line, const std::string& place);
+  /// Goes on with the file that a card names, seen from the folder of the deck, then returns to this one.
+  void include(const std::string& name, const std::string& card, const std::string& place);
+  /// A line read ahead is read once more, behind what is put in front of it.
+  void give_back();
   friend struct Mark;
   std::vector<Source> stack_;
   std::vector<Source> kept_;  // texts and names that fields and places point into

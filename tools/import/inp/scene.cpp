@@ -22,7 +22,20 @@ InpScene::InpScene(const InpDeck& d, Imported& in, SetNames& names, const std::m
     if (info(in.mesh.shape[c]).dimension != 2) of_solids_.insert(in.mesh.cell(c).begin(), in.mesh.cell(c).end());
 }
 
+/// Nothing else would say that such a line does nothing.
+void InpScene::tell_empty_sets() {
+  const auto tell = [&](const char* card, const InpTarget& t, const std::map<std::string, InpSet>& sets) {
+    if (!t.target.empty() && numbers_in(sets, t).empty()) in_.skip(fmt::format("{} on an empty set", card), t.place);
+  };
+  for (const InpNodal& l : d_.supports) tell("*BOUNDARY", l, d_.nset);
+  for (const InpNodal& l : d_.forces) tell("*CLOAD", l, d_.nset);
+  for (const InpNodal& l : d_.velocities) tell("*INITIAL CONDITIONS", l, d_.nset);
+  for (const InpDistributed& l : d_.distributed)
+    if (l.face != 0) tell("*DLOAD", l, d_.elset);
+}
+
 SceneWriter InpScene::write() {
+  tell_empty_sets();
   gravity();
   materials();
   write_ties(d_, in_, names_, o_, scene_);

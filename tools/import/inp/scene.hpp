@@ -49,6 +49,7 @@ class InpScene {
   void tied();
   void contacts();
   // scene_loads.cpp
+  void tell_empty_sets();
   void gravity();
   void centrifugal();
   void load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, std::initializer_list<SceneKey> keys);

@@ -47,6 +47,7 @@ void InpScene::gravity() {
 }
 
 void InpScene::centrifugal() {
+  std::map<std::int64_t, const InpDistributed*> spun;  // elements, by the first line that turns them
   for (const auto& p : d_.distributed) {
     if (p.face != -2 || p.value == 0) continue;
     const auto& first = *std::ranges::find_if(d_.distributed, [&](const InpDistributed& q) {
@@ -56,8 +57,14 @@ void InpScene::centrifugal() {
       in_.skip("*DLOAD CENTRIF about another axis than the one before it, on the same elements", p.place);
       continue;
     }
-    if (const auto ids = numbers_in(d_.elset, p); std::ranges::any_of(ids, [&](std::int64_t id) { return d_.beams.contains(id); }))
-      in_.skip("*DLOAD CENTRIF on beams", p.place);
+    const auto ids = numbers_in(d_.elset, p);
+    bool again = false;  // by another set
+    for (const auto id : ids) again = spun.try_emplace(id, &first).first->second != &first || again;
+    if (again) {
+      in_.skip("*DLOAD CENTRIF on elements that one before it turns", p.place);
+      continue;
+    }
+    if (std::ranges::any_of(ids, [&](std::int64_t id) { return d_.beams.contains(id); })) in_.skip("*DLOAD CENTRIF on beams", p.place);
     if (d_.plan.procedure == "*FREQUENCY") in_.skip("spin softening of *DLOAD CENTRIF in *FREQUENCY", p.place);
     tell_turns(p);
     load_of_mass(p, "centrifugal", "centrifugal", {{"at", point(p.at)}, {"axis", p.direction}, {"speed", std::sqrt(p.value) / si("s")}});

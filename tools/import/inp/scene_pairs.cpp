@@ -46,9 +46,9 @@ void InpScene::contacts() {
     if (tied)
       in_.notes.push_back(fmt::format("{}: tied contact becomes a [[tie]], without the stiffness of *SURFACE BEHAVIOR", c.place));
     else if (!with.law.empty())
-      in_.notes.push_back(
-          fmt::format("{}: the stiffness of the contact is hilo's own, by E and the depth of cells, not that of *SURFACE BEHAVIOR, {}",
-                      c.place, with.law));
+      in_.skip(
+          fmt::format("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE={}: the stiffness is hilo's own, by E and the depth of cells", with.law),
+          c.place);
     scene_.add_unique(tied ? "tie" : "contact", clean_name(c.name), c.place, {{"a", a}, {"b", b}})
         .set_if(!tied && with.friction > 0, "friction", with.friction);
   };
