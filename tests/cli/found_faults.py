@@ -202,6 +202,17 @@ def ends_of_beams_are_moved():
     assert "SPCD of a component that another one drives: the last holds" in told, told
 
 
+def equations_of_turns():
+    """w of one cantilever is half the turn of another's end, F L^3/(7 E I); and .3 times that of its own end, by hand."""
+    EI, beams = 2.1e11 * 1e-8, NASTRAN[:4] + ["MPC = 7"] + NASTRAN[4:]
+    push, other = "FORCE,1,2,,1.,0.,0.,1.", ["GRID,3,,0.,1.,0.", "GRID,4,,1.,1.,0.", "CBAR,2,1,3,4,0.,0.,1.", "SPC1,1,123456,3"]
+    way, _ = tip(*beams, *other, push, "MPC,7,2,3,1.,4,5,-.5", "ENDDATA", name="deck.bdf")
+    assert abs(way[2] * 7 * EI - 1) < 1e-4, way
+    pull = (1 / 3 + .15) / (1 / 3 + .15 + .15 + .09)
+    way, _ = tip(*beams, push, "MPC,7,2,3,1.,2,5,-.3", "ENDDATA", name="deck.bdf")
+    assert abs(way[2] * EI / ((1 - pull) / 3 - .15 * pull) - 1) < 1e-3, way
+
+
 def scaled_beams():
     """A deck at half its size: a cantilever's length and section are halved, F L^3 / (3 E I) becomes twice as large."""
     deck = [*NASTRAN, "FORCE,1,2,,1.,0.,0.,1.", "ENDDATA"]
@@ -233,7 +244,7 @@ def compare_many_bodies():
 
 
 ALL = [restart_in_another_order, restart_with_another_table, restart_with_other_bodies, shares_beside_a_gear, factors_ask_for_more_room, mass_beside_its_grid,
-       ends_of_beams_are_moved, scaled_beams, slender_arm_by_cg, compare_many_bodies]
+       ends_of_beams_are_moved, equations_of_turns, scaled_beams, slender_arm_by_cg, compare_many_bodies]
 failed = 0
 for test in ALL:
     if len(sys.argv) > 2 and test.__name__ not in sys.argv[2:]:

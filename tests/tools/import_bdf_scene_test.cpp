@@ -255,8 +255,8 @@ TEST_F(ImportBdfScene, WhatIsLeftOutIsToldByNameAndNumber) {
   imported("a.bdf", "--scene-out s.toml");
   for (const char* what :
        {"SUBCASE after the first (1, a.bdf:9)", "case control TEMPERATURE (1, a.bdf:5)",
-        "FORCE of a set that the first subcase does not use (2,", "MOMENT on a node of solids, which does not turn (1,", "TEMP (1,",
-        "MPC of a set that the first subcase does not use (1,", "SPC of a set that the first subcase does not use (1,",
+        "FORCE of a set that the subcase does not use (2,", "MOMENT on a node of solids, which does not turn (1,", "TEMP (1,",
+        "MPC of a set that the subcase does not use (1,", "SPC of a set that the subcase does not use (1,",
         "PLOAD4 that varies over the face (1,", "CELAS2 on the rotation of a node of solids, which does not turn (1,",
         "CELAS2 between different components (1,", "CELAS2 below zero (1,", "FORCE on a grid of no element (1,",
         "RBE3 whose grid is a node of a cell (1,", "RBE2 of some components of nodes of solids (1,"}) {

@@ -71,7 +71,7 @@ bool begins_with(std::string_view what, std::string_view words) {
 
 std::string_view loss_of(const NotRead& n) {
   if (n.output || n.what.find(": numbers after its ") != std::string::npos) return "";
-  for (const char* unused : {" of a set that the first subcase does not use", " of a set that no subcase uses"})
+  for (const char* unused : {" of a set that the subcase does not use", " of a set that no subcase uses"})
     if (n.what.find(unused) != std::string::npos) return "";
   std::string_view lost = "other";
   size_t longest = 0;

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
+#include <algorithm>
 #include <bit>
 
 #include "base/error.hpp"
@@ -150,7 +151,23 @@ std::string sliding_body(SceneWriter& scene, const std::string& name, const Vec3
   return name;
 }
 
-void joints_of_sum(SceneWriter& scene, const std::vector<SumTerm>& terms, const std::string& name, const std::string& place) {
+void add_turn(SceneWriter& scene, std::vector<SumTerm>& terms, const std::string& body, const Vec3& at, const Vec3& beside, const Vec3& way,
+              const std::string& place) {
+  const std::string of = scene.unique("body", body + "_turn");  // the ends of a sum are different bodies
+  massless_body(scene, of, beside, place);
+  scene.add_unique({"joint", "fixed"}, of, place, {{"a", body}, {"b", of}, {"at", beside}});
+  terms.push_back({of, beside, way});
+  terms.push_back({body, at, -way});
+}
+
+void joints_of_sum(SceneWriter& scene, const std::vector<SumTerm>& all, const std::string& name, const std::string& place) {
+  std::vector<SumTerm> terms;  // one of each point, as the ends of a sum are different bodies
+  for (const SumTerm& t : all) {
+    const auto same = std::ranges::find_if(terms, [&](const SumTerm& s) { return s.end == t.end && s.at == t.at; });
+    same == terms.end() ? terms.push_back(t) : void(same->way += t.way);
+  }
+  std::erase_if(terms, [](const SumTerm& t) { return t.way == Vec3::Zero(); });
+  if (terms.empty()) return;
   if (terms.size() == 1) return joint_to_slide(scene, name, "", terms[0].end, terms[0].way.normalized(), terms[0].at, place);
   const auto row = [&](const SumTerm& a, const SumTerm& b, const SumTerm* c) {
     SceneTable& joint = scene.add_unique(

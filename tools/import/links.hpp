@@ -48,6 +48,9 @@ struct SumTerm {
   std::string end;  // a set of one node or a body of the scene
   Vec3 at, way;
 };
+/// Terms of a small turn of a body at a point, times `way` of a point `beside` it: what that point goes more than the body's own.
+void add_turn(SceneWriter& scene, std::vector<SumTerm>& terms, const std::string& body, const Vec3& at, const Vec3& beside, const Vec3& way,
+              const std::string& place);
 /// Joints that keep the sum at zero; those of more than three terms by bodies of no mass that move as sums of the first ones.
 void joints_of_sum(SceneWriter& scene, const std::vector<SumTerm>& terms, const std::string& name, const std::string& place);
 

@@ -53,7 +53,7 @@ void join_told(const BdfDeck& deck, const std::vector<BdfCase>& cases, Imported&
   std::set<std::pair<std::string, std::string>> said;  // what, and its place
   for (const DeckCase& c : in.cases)
     for (const NotRead& n : c.not_read)
-      if (n.what.find(" of a set that the first subcase does not use") == std::string::npos && said.insert({n.what, n.place}).second)
+      if (n.what.find(" of a set that the subcase does not use") == std::string::npos && said.insert({n.what, n.place}).second)
         all.push_back(n);
   in.not_read = std::move(all);
   std::set<std::int64_t> load, spc, mpc, glue, contact;

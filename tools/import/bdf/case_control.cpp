@@ -71,7 +71,7 @@ std::int64_t BdfCase::*choice_of(const std::string& word) {
 void forget_heat(Imported& in) {
   std::erase_if(in.not_read, [](const NotRead& n) { return n.what.ends_with(": thermal expansion"); });
   for (NotRead& n : in.not_read)
-    if (n.what.starts_with("TEMP")) n.what += " of a set that the first subcase does not use";
+    if (n.what.starts_with("TEMP")) n.what += " of a set that the subcase does not use";
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ void BdfScene::hold() {
   const BdfSum taken = sum ? *sum : BdfSum{1, {{1, take}}, ""};
   for (const auto& [id, lines] : all.lines)
     if (std::ranges::find(taken.parts, std::pair(1., id)) == taken.parts.end())
-      in_.skip("SPC of a set that the first subcase does not use", lines.front().place, static_cast<std::int64_t>(lines.size()));
+      in_.skip("SPC of a set that the subcase does not use", lines.front().place, static_cast<std::int64_t>(lines.size()));
 
   for (size_t a = 0; a < deck_.grids.size(); ++a)
     if (const std::string& always = deck_.grids[a].held; !always.empty()) {

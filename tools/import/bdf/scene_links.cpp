@@ -269,8 +269,9 @@ void BdfScene::rigid(const BdfRigid& r) {
 std::string BdfScene::why_no_sum(const BdfEquation& m) const {
   if (m.terms.empty()) return " of no term";
   for (const auto& t : m.terms) {
-    if (t.component < 1 || t.component > 3) return " of turns";
-    if (const End e = end(row(t.grid, m.place, "MPC")); e != End::node && e != End::body) return " of a grid of no solid";
+    const End e = end(row(t.grid, m.place, "MPC"));
+    if (t.component < 1 || t.component > 6 || (t.component > 3 && e != End::body)) return " of turns";
+    if (e != End::node && e != End::body) return " of a grid of no solid";
   }
   return "";
 }
@@ -288,11 +289,17 @@ bool BdfScene::is_slide(const BdfEquation& m) const {
 
 void BdfScene::sum_up(const BdfEquation& m) {
   std::map<std::int64_t, Vec3> of;
+  std::vector<SumTerm> terms;
   for (const auto& t : m.terms) {
     const auto r = row(t.grid, m.place, "MPC");
-    of.try_emplace(r, Vec3::Zero()).first->second += t.factor * axes(r).col(t.component - 1);
+    if (t.component <= 3) {
+      of.try_emplace(r, Vec3::Zero()).first->second += t.factor * axes(r).col(t.component - 1);
+    } else if (t.factor != 0) {
+      const Vec3 axis = axes(r).col(t.component - 4), beside = axes(r).col((t.component - 3) % 3);
+      add_turn(scene_, terms, end_name(r), point(X(r)), point(X(r) + size_ * beside), t.factor / size_ * axis.cross(beside), m.place);
+    }
   }
-  std::vector<SumTerm> terms;
+  if (!terms.empty()) in_.notes.push_back(fmt::format("{}: MPC of turns holds for small ones: it has their sines", m.place));
   for (const auto& [r, way] : of)
     if (way != Vec3::Zero()) terms.push_back({end_name(r), point(X(r)), way});
   if (!terms.empty()) joints_of_sum(scene_, terms, "equation", m.place);
@@ -332,7 +339,7 @@ void BdfScene::equations() {
   };
   for (const auto& [id, list] : deck_.ties.lines) {
     const bool taken = !chosen.any || deck_.ties.takes(chosen.mpc, id);
-    if (!taken) in_.skip("MPC of a set that the first subcase does not use", list.front().place, static_cast<std::int64_t>(list.size()));
+    if (!taken) in_.skip("MPC of a set that the subcase does not use", list.front().place, static_cast<std::int64_t>(list.size()));
     if (taken) std::ranges::for_each(list, take);
   }
   for (const auto& [ends, held] : joints)

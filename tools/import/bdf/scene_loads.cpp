@@ -89,7 +89,7 @@ void BdfScene::choose_loads() {
       if (!add(sum->factor * factor, id)) in_.skip(fmt::format("LOAD of set {}, of which there is none", id), sum->place);
   for (const auto& [id, lines] : all.lines)
     if (!taken.contains(id))
-      for (const BdfLoad& l : lines) in_.skip(fmt::format("{} of a set that the first subcase does not use", name_of(l.kind)), l.place);
+      for (const BdfLoad& l : lines) in_.skip(fmt::format("{} of a set that the subcase does not use", name_of(l.kind)), l.place);
 }
 
 void BdfScene::gravity() {

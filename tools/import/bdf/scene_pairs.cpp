@@ -45,7 +45,7 @@ void BdfScene::pairs() {
       in_.skip(fmt::format("{} = {}, of which there is none", card == "BCTSET" ? "BCSET" : card, chosen), "case control");
     std::set<std::pair<std::string, std::string>> seen;
     const auto pair = [&](std::int64_t id, const BdfGlue& g) {
-      if (taken.any && !all.takes(chosen, id)) return in_.skip(card + " of a set that the first subcase does not use", g.place);
+      if (taken.any && !all.takes(chosen, id)) return in_.skip(card + " of a set that the subcase does not use", g.place);
       const std::string a = pair_surface(g.target), b = pair_surface(g.source);
       if (a.empty() || b.empty()) return in_.skip(card + " of a region that is no BSURFS", g.place);
       if (!seen.emplace(std::minmax(a, b)).second)

@@ -77,14 +77,9 @@ void InpScene::sums() {
     for (const auto& b : s.bodies) {
       const Vec3 X = d_.bodies.at(b.id).X, e = Vec3::Unit((b.component - 1) % 3);
       if (b.component > 3) {  // a small turn is what a point beside goes, over its distance
-        const Vec3 beside = Vec3::Unit(b.component % 3), way = e.cross(beside);
+        const Vec3 beside = Vec3::Unit(b.component % 3);
         const double L = size_of(d_, in_.mesh);
-        const Vec3 at = point(X + L * beside);
-        const std::string of = scene_.unique("body", body_name(d_, b.id) + "_turn");  // the ends of a sum are different bodies
-        massless_body(scene_, of, at, s.place);
-        scene_.add_unique({"joint", "fixed"}, of, s.place, {{"a", body_name(d_, b.id)}, {"b", of}, {"at", at}});
-        terms.push_back({of, at, b.factor / L * way});
-        terms.push_back({body_name(d_, b.id), point(X), -b.factor / L * way});
+        add_turn(scene_, terms, body_name(d_, b.id), point(X), point(X + L * beside), b.factor / L * e.cross(beside), s.place);
         turns = true;
       } else {
         terms.push_back({body_name(d_, b.id), point(X), b.factor * e});
