@@ -34,22 +34,24 @@ struct SparseCholesky::Impl {
 SparseCholesky::SparseCholesky() : impl_(std::make_unique<Impl>()) {}
 SparseCholesky::~SparseCholesky() = default;
 
-bool SparseCholesky::factor(const Eigen::SparseMatrix<double>& K) {
+/// `kind`, CHOLMOD's stype: -1 of a symmetric matrix by its lower triangle, 0 of A A^T.
+bool SparseCholesky::factor(const Eigen::SparseMatrix<double>& A, int kind, double mu) {
   Impl& my = *impl_;
   const auto is_same = [](const std::vector<int>& before, const int* now, Eigen::Index n) {
     return std::equal(before.begin(), before.end(), now, now + n);
   };
-  if (!my.L || !is_same(my.start, K.outerIndexPtr(), K.cols() + 1) || !is_same(my.row, K.innerIndexPtr(), K.nonZeros())) {
+  if (!my.L || !is_same(my.start, A.outerIndexPtr(), A.cols() + 1) || !is_same(my.row, A.innerIndexPtr(), A.nonZeros())) {
     cholmod_free_factor(&my.L, &my.common);
-    my.start.assign(K.outerIndexPtr(), K.outerIndexPtr() + K.cols() + 1),
-        my.row.assign(K.innerIndexPtr(), K.innerIndexPtr() + K.nonZeros());
+    my.start.assign(A.outerIndexPtr(), A.outerIndexPtr() + A.cols() + 1),
+        my.row.assign(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros());
   }
   cholmod_sparse view{};
-  view.nrow = view.ncol = static_cast<size_t>(K.cols()), view.nzmax = my.row.size();
-  view.p = my.start.data(), view.i = my.row.data(), view.x = const_cast<double*>(K.valuePtr());
-  view.stype = -1, view.itype = CHOLMOD_INT, view.xtype = CHOLMOD_REAL, view.dtype = CHOLMOD_DOUBLE, view.packed = 1, view.sorted = 1;
+  view.nrow = static_cast<size_t>(A.rows()), view.ncol = static_cast<size_t>(A.cols()), view.nzmax = my.row.size();
+  view.p = my.start.data(), view.i = my.row.data(), view.x = const_cast<double*>(A.valuePtr());
+  view.stype = kind, view.itype = CHOLMOD_INT, view.xtype = CHOLMOD_REAL, view.dtype = CHOLMOD_DOUBLE, view.packed = 1, view.sorted = 1;
   if (!my.L) my.L = cholmod_analyze(&view, &my.common);
-  const bool done = my.L && cholmod_factorize(&view, my.L, &my.common);
+  double shift[2] = {mu, 0};
+  const bool done = my.L && cholmod_factorize_p(&view, shift, nullptr, 0, my.L, &my.common);
   my.check_memory();
   return done && my.common.status == CHOLMOD_OK && my.L->minor == my.L->n;
 }

@@ -16,11 +16,14 @@ class SparseCholesky {
   SparseCholesky& operator=(const SparseCholesky&) = delete;
   /// Of K, both triangles of which are there; its order is found anew where its pattern is another one.  False where K is not positive
   /// definite.  Errors: no memory for them.
-  bool factor(const Eigen::SparseMatrix<double>& K);
-  /// K^-1 b.
+  bool factor(const Eigen::SparseMatrix<double>& K) { return factor(K, -1, 0); }
+  /// Of A A^T + mu, which is not set up.
+  bool factor_square(const Eigen::SparseMatrix<double>& A, double mu) { return factor(A, 0, mu); }
+  /// What was factored, inverse, times b.
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
 
  private:
+  bool factor(const Eigen::SparseMatrix<double>& A, int kind, double mu);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

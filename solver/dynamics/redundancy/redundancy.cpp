@@ -141,10 +141,7 @@ class Nearest {
   static constexpr double mu = 1e-10;  // far below the square of `aside`, which rows that are independent beside q alone have
   bool factor(Eigen::SparseMatrix<double> A) {
     A_ = std::move(A), plane_.resize(0);
-    Eigen::SparseMatrix<double> K = A_ * Eigen::SparseMatrix<double>(A_.transpose()), I(K.rows(), K.cols());
-    I.setIdentity();
-    K += mu * I;
-    return factors_.factor(K);
+    return factors_.factor_square(A_, mu);
   }
   /// The part of y that the rows leave.
   Eigen::VectorXd left_of(const Eigen::VectorXd& y) const { return mu * factors_.solve(y); }
