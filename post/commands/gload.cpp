@@ -97,7 +97,8 @@ void run(const GloadOptions& o) {
     fmt::print(
         stderr,
         "Peaks in g with their sign (t_res in s); proper acceleration, +1 upward at rest.  CFC {:g}: SAE J211-1, forwards and backwards,\n"
-        "ends continued by point reflection.  clip_3ms: cumulative, of the filtered resultant.  band: the most that step and mesh resolve\n"
+        "the first value held before the record.  clip_3ms: cumulative, of the filtered resultant.  band: the most that step and mesh "
+        "resolve\n"
         "to 1 % where the raw resultant is largest [Hz]; above: the share of that peak above it.\n",
         o.cfc);
 }

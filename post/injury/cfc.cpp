@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "base/error.hpp"
 
@@ -30,32 +31,31 @@ void pass(const CfcFilter& f, std::vector<double>& x) {
   }
 }
 
-/// Value at the first of `fit` samples of the straight line that best fits 33 points among them, so that finer sampling changes nothing.
-template <class At>
-double end_of_line(size_t fit, At at) {
-  const size_t n = std::min<size_t>(fit, 33);
-  const double m = static_cast<double>(n), middle = (m - 1) / 2;
-  double mean = 0, moment = 0;
-  for (size_t k = 0; k < n; ++k) {
-    const double place = n < 2 ? 0 : static_cast<double>((fit - 1) * k) / (m - 1);
-    const auto i = std::min(static_cast<size_t>(place), fit - 1), j = std::min(i + 1, fit - 1);
-    const double s = place - static_cast<double>(i), x = (1 - s) * at(i) + s * at(j);
-    mean += x / m, moment += (static_cast<double>(k) - middle) * x;
+/// The area under (t, x), straight between samples and held beyond both ends, from t.front() to times that rise.
+struct Area {
+  std::span<const double> t, x;
+  size_t i = 0;
+  double before = 0;  // up to t[i]
+  double until(double w) {
+    if (w <= t.front()) return x.front() * (w - t.front());
+    for (; i + 1 < t.size() && t[i + 1] <= w; ++i) before += (t[i + 1] - t[i]) * (x[i] + x[i + 1]) / 2;
+    if (i + 1 == t.size()) return before + x.back() * (w - t.back());
+    const double s = (w - t[i]) / (t[i + 1] - t[i]);
+    return before + (w - t[i]) * (x[i] + s * (x[i + 1] - x[i]) / 2);
   }
-  return n < 2 ? mean : mean - middle * moment / (m * (m * m - 1) / 12);
-}
+};
 
 }  // namespace
 
-std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const double> x, size_t pad, size_t fit) {
+std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const double> x, size_t pad, Ends front, Ends back) {
   if (x.empty()) return {};
   std::vector<double> padded;
   padded.reserve(x.size() + 2 * pad);
-  const size_t last = x.size() - 1, n = std::clamp<size_t>(fit, 1, x.size());
-  const double front = end_of_line(n, [&](size_t k) { return x[k]; }), back = end_of_line(n, [&](size_t k) { return x[last - k]; });
-  for (size_t k = pad; k > 0; --k) padded.push_back(2 * front - x[std::min(k, last)]);
+  const size_t last = x.size() - 1;
+  const auto away = [&](Ends end, size_t k) { return end == Ends::held ? 0 : std::min(k, last); };
+  for (size_t k = pad; k > 0; --k) padded.push_back(x[away(front, k)]);
   padded.insert(padded.end(), x.begin(), x.end());
-  for (size_t k = 1; k <= pad; ++k) padded.push_back(2 * back - x[last - std::min(k, last)]);
+  for (size_t k = 1; k <= pad; ++k) padded.push_back(x[last - away(back, k)]);
   pass(filter, padded);
   std::reverse(padded.begin(), padded.end());
   pass(filter, padded);
@@ -64,17 +64,30 @@ std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const do
   return {begin, begin + static_cast<std::ptrdiff_t>(x.size())};
 }
 
-std::vector<double> uniform_times(std::span<const double> t) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (size_t i = 1; i < t.size(); ++i)
-    if (t[i] > t[i - 1]) smallest = std::min(smallest, t[i] - t[i - 1]);
-  const double whole = t.back() - t.front(), intervals = static_cast<double>(t.size() - 1);
-  if (!(whole > 0)) return {t.begin(), t.end()};
-  const auto n = static_cast<size_t>(std::clamp(std::round(whole / smallest), intervals, 16 * intervals));
-  std::vector<double> uniform(n + 1);
-  for (size_t i = 0; i <= n; ++i) uniform[i] = t.front() + whole * static_cast<double>(i) / static_cast<double>(n);
-  uniform.back() = t.back();
-  return uniform;
+EvenSignal evenly(std::span<const double> t, std::span<const double> x, double cfc) {
+  const double whole = t.back() - t.front();
+  if (!(whole > 0)) return {{t.begin(), t.end()}, {x.begin(), x.end()}};
+  const auto rows = t.size() - 1;
+  bool even = true;
+  for (size_t i = 0; i <= rows; ++i)
+    even = even && std::abs(t[i] - t.front() - whole * static_cast<double>(i) / static_cast<double>(rows)) * static_cast<double>(rows) <=
+                       0.01 * whole;
+  const size_t n = even ? rows : static_cast<size_t>(std::ceil(200 * cfc * whole));
+  EvenSignal s{std::vector<double>(n + 1), {}};
+  for (size_t i = 0; i <= n; ++i) s.t[i] = t.front() + whole * static_cast<double>(i) / static_cast<double>(n);
+  s.t.back() = t.back();
+  if (even) {
+    s.x = interpolate(t, x, s.t);
+    return s;
+  }
+  const double T = whole / static_cast<double>(n);
+  Area area{t, x};
+  double before = area.until(s.t[0] - T / 2);
+  for (const double middle : s.t) {
+    const double now = area.until(middle + T / 2);
+    s.x.push_back((now - before) / T), before = now;
+  }
+  return s;
 }
 
 std::vector<double> interpolate(std::span<const double> t, std::span<const double> x, std::span<const double> when) {
@@ -104,12 +117,17 @@ void check_rate(std::span<const double> t, double cfc, const std::string& where)
 
 Filtered cfc_filtered(std::span<const double> t, std::span<const double> x, double cfc, const std::string& where) {
   check_rate(t, cfc, where);
-  Filtered f;
-  f.t = uniform_times(t);
-  const double T = (f.t.back() - f.t.front()) / static_cast<double>(f.t.size() - 1);
+  const EvenSignal even = evenly(t, x, cfc);
+  const double T = (even.t.back() - even.t.front()) / static_cast<double>(even.t.size() - 1);
   // At least 10 ms (SAE J211), and long enough for the slowest class to settle.
   const auto pad = static_cast<size_t>(std::ceil(std::max(0.01, 2 / cfc) / T));
-  f.x = filter_both_ways(cfc_filter(cfc, T), interpolate(t, x, f.t), pad, static_cast<size_t>(std::lround(0.5 / cfc / T)) + 1);
+  const CfcFilter filter = cfc_filter(cfc, T);
+  Filtered f{even.t, filter_both_ways(filter, even.x, pad), {}};
+  std::vector<double> mirrored = filter_both_ways(filter, even.x, pad, Ends::held, Ends::mirrored);
+  const double mean = std::accumulate(even.x.begin(), even.x.end(), 0.0) / static_cast<double>(even.x.size());
+  if (std::abs(mirrored.back() - mean) < std::abs(f.x.back() - mean)) f.x.swap(mirrored);
+  const std::vector<double> both = filter_both_ways(filter, even.x, pad, Ends::mirrored, Ends::mirrored);
+  for (size_t i = 0; i < f.x.size(); ++i) f.by_ends.push_back(std::max(std::abs(f.x[i] - both[i]), std::abs(f.x[i] - mirrored[i])));
   return f;
 }
 

@@ -18,20 +18,27 @@ struct CfcFilter {
 /// Coefficients for a class and a sampling interval T [s].
 CfcFilter cfc_filter(double cfc, double T);
 
-/// Filter forwards and backwards.  Both ends are continued by `pad` samples (point reflection, then a constant), so that the ends do not
-/// ring; they are reflected at the end of a line through the last `fit` samples, so that an oscillation above the class does not pass
-/// there.
-std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const double> x, size_t pad, size_t fit = 1);
+/// How a record is continued beyond an end: by its last value there, or by its mirror image.
+enum class Ends { held, mirrored };
+/// Filter forwards and backwards, with `pad` samples of continuation at both ends, so that they do not ring.
+std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const double> x, size_t pad, Ends front = Ends::held,
+                                     Ends back = Ends::held);
 
-/// Uniform times from t.front() to t.back() at the smallest interval of t (or 16 samples per recorded one where that is coarser).
-std::vector<double> uniform_times(std::span<const double> t);
+/// (t, x), straight between samples, at equal intervals.  Even records (to a hundredth of their interval) keep theirs; of others the means
+/// over intervals of 1/(200 CFC), which keep the area of the shortest shock.
+struct EvenSignal {
+  std::vector<double> t, x;
+};
+EvenSignal evenly(std::span<const double> t, std::span<const double> x, double cfc);
 /// Linear interpolation of (t, x) at `when`.
 std::vector<double> interpolate(std::span<const double> t, std::span<const double> x, std::span<const double> when);
 
-/// One component, filtered on a uniform resampling; values at the uniform times.  Error (at `where`) when an interval of t is longer than
-/// 1/(10 CFC): such a record does not hold what the filter is to pass.
+/// One component, filtered at equal intervals.  The first value is held before the record.  After it the last one is held or the record
+/// mirrored, whichever ends nearer to the mean: a shock that is over there comes once, and an oscillation above the class does
+/// not pass.  Error (at `where`) when an interval of t is longer than 1/(10 CFC): such a record does not hold what the filter is to pass.
 struct Filtered {
   std::vector<double> t, x;
+  std::vector<double> by_ends;  // what other continuations would change
 };
 Filtered cfc_filtered(std::span<const double> t, std::span<const double> x, double cfc, const std::string& where);
 void check_rate(std::span<const double> t, double cfc, const std::string& where);

@@ -2,6 +2,7 @@
 #include "post/injury/gload.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fnmatch.h>
 
 #include <algorithm>
@@ -26,13 +27,27 @@ std::vector<double> resultant(const std::array<std::vector<double>, 4>& a) {
 namespace {
 
 void filter(SensorRecord& s, double cfc) {
+  std::array<std::vector<double>, 4> by_ends;
   for (size_t axis = 0; axis < 3; ++axis) {
     Filtered f = cfc_filtered(s.t, s.raw[axis], cfc, s.where);
     s.uniform = std::move(f.t);
-    s.filtered[axis] = std::move(f.x);
+    s.filtered[axis] = std::move(f.x), by_ends[axis] = std::move(f.by_ends);
   }
   s.raw[3] = resultant(s.raw);
-  s.filtered[3] = resultant(s.filtered);
+  s.filtered[3] = resultant(s.filtered), by_ends[3] = resultant(by_ends);
+  const double largest = std::abs(s.filtered[3][peak_index(s.filtered[3])]);
+  constexpr const char* name[] = {"x", "y", "z", "resultant"};
+  for (const size_t a : {3, 2, 1, 0}) {
+    const size_t i = peak_index(s.filtered[a]);
+    if (!(by_ends[a][i] > 0.02 * largest)) continue;
+    const bool early = s.uniform[i] - s.uniform.front() < s.uniform.back() - s.uniform[i];
+    return warn(
+        s.where,
+        fmt::format("CFC {:g} peak of {}, {:.4g} g at {:.4g} s, lies near the {} of the record: what is taken to come {} it changes "
+                    "it by up to {:.2g} g: record {:.2g} s more there",
+                    cfc, name[a], s.filtered[a][i], s.uniform[i], early ? "start" : "end", early ? "before" : "after", by_ends[a][i],
+                    std::max(0.01, 1 / cfc)));
+  }
 }
 
 Sensors from_csv(const std::string& path, const std::vector<std::string>& globs) {
@@ -63,7 +78,12 @@ Sensors from_csv(const std::string& path, const std::vector<std::string>& globs)
   for (const std::string& name : all) {
     if (std::ranges::none_of(globs, [&](const std::string& g) { return fnmatch(g.c_str(), name.c_str(), 0) == 0; })) continue;
     SensorRecord s{name, t, {}, found[name], {}, fmt::format("{}: sensor \"{}\"", path, name)};
-    for (size_t axis = 0; axis < 3; ++axis) s.raw[axis].resize(t.size(), 0);
+    std::vector<std::string> lacking;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      if (s.raw[axis].empty()) lacking.emplace_back(1, "xyz"[axis]);
+      s.raw[axis].resize(t.size(), 0);
+    }
+    if (!lacking.empty()) warn(s.where, fmt::format("no column for {}, taken as 0 g", fmt::join(lacking, " and ")));
     out.records.push_back(std::move(s));
   }
   if (out.records.empty()) throw Error(path, fmt::format("no sensor \"{}\"", globs.front()), suggest(globs.front(), all));

@@ -92,8 +92,8 @@ HeadInjury head_injury(std::span<const double> t, std::span<const double> a, dou
     for (size_t j = i + 1; j < t.size() && t[j] - t[i] <= window * (1 + 1e-12); ++j) {
       const double span = t[j] - t[i];
       if (!(span > 0)) continue;
-      const double value = span * std::pow(std::max(0.0, (I[j] - I[i]) / span), 2.5);
-      if (value > best.value) best = {value, t[i], t[j]};
+      const double mean = std::max(0.0, (I[j] - I[i]) / span), fifth = mean * mean * mean * mean * mean;
+      if (span * span * fifth > best.value * best.value) best = {span * std::sqrt(fifth), t[i], t[j]};
     }
   return best;
 }

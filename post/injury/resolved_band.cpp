@@ -44,21 +44,19 @@ RawPeak raw_peak(const ResolvedBand& band, std::span<const double> t, std::span<
   p.t = t[k], p.value = x[k];
   p.h = h > 0 ? h : std::max(k > 0 ? t[k] - t[k - 1] : 0, k + 1 < t.size() ? t[k + 1] - t[k] : 0);
   p.band = band.at(p.h), p.region = band.is_bounded_by_mesh(p.h) ? band.region : "";
-  if (p.value == 0) return p;
-  const std::vector<double> uniform = uniform_times(t);
-  const double T = uniform.size() > 1 ? uniform[1] - uniform[0] : p.h,
-               cfc = p.band / 2.0775 * std::sqrt(3);  // takes a tenth of a wave at the band
-  if (cfc * T * 2.0775 > 0.2) return p;               // the record holds nothing above
-  // ends are mirrored, so that a peak there is judged as one inside
-  const std::vector<double> inner = interpolate(t, x, uniform);
-  const size_t pad = std::min(static_cast<size_t>(std::ceil(2 / (cfc * T))), inner.size() - 1);
-  std::vector<double> whole(inner.rend() - static_cast<std::ptrdiff_t>(pad) - 1, inner.rend() - 1);
-  whole.insert(whole.end(), inner.begin(), inner.end());
-  whole.insert(whole.end(), inner.rbegin() + 1, inner.rbegin() + 1 + static_cast<std::ptrdiff_t>(pad));
-  const std::vector<double> below = filter_both_ways(cfc_filter(cfc, T), whole, pad);
+  if (p.value == 0 || !std::isfinite(p.band)) return p;
+  const double cfc = p.band / 2.0775 * std::sqrt(3);  // takes a tenth of a wave at the band
+  // The filter remembers less than 3/cfc.  Ends are mirrored, so that a peak there is judged as one inside.
+  const auto first = std::ranges::lower_bound(t, p.t - 3 / cfc), last = std::ranges::upper_bound(t, p.t + 3 / cfc);
+  const auto from = static_cast<size_t>(std::max<std::ptrdiff_t>(first - t.begin() - 1, 0)),
+             count = std::min(static_cast<size_t>(last - t.begin()) + 1, t.size()) - from;
+  const EvenSignal near = evenly(t.subspan(from, count), x.subspan(from, count), cfc);
+  const double T = (near.t.back() - near.t.front()) / static_cast<double>(near.t.size() - 1);
+  const std::vector<double> below =
+      filter_both_ways(cfc_filter(cfc, T), near.x, static_cast<size_t>(std::ceil(2 / (cfc * T))), Ends::mirrored, Ends::mirrored);
   double left = 0;  // near the peak: half a wave of the band on either side
-  for (size_t i = 0; i < uniform.size(); ++i)
-    if (std::abs(uniform[i] - p.t) <= 0.5 / p.band) left = std::max(left, below[pad + i] * (p.value > 0 ? 1 : -1));
+  for (size_t i = 0; i < near.t.size(); ++i)
+    if (std::abs(near.t[i] - p.t) <= 0.5 / p.band) left = std::max(left, below[i] * (p.value > 0 ? 1 : -1));
   p.above = std::abs(1 - left / std::abs(p.value));
   return p;
 }

@@ -60,13 +60,63 @@ TEST(Cfc, a_constant_passes_unchanged_up_to_both_ends) {
   for (const double y : filter_both_ways(cfc_filter(60, 1e-4), x, 100)) EXPECT_NEAR(y, 1, 1e-11);
 }
 
-TEST(Cfc, an_oscillation_above_the_class_does_not_pass_at_the_ends_and_a_line_does) {
+TEST(Cfc, an_oscillation_above_the_class_does_not_pass_at_the_end_and_a_line_does_inside) {
   std::vector<double> t, ringing, line;
   for (int i = 0; i <= 1200; ++i)
     t.push_back(2.5e-4 * i), ringing.push_back(std::cos(2 * M_PI * 350 * (t.back() - 0.3))), line.push_back(3 - 40 * t.back());
   const Filtered r = cfc_filtered(t, ringing, 60, "test"), l = cfc_filtered(t, line, 60, "test");
-  for (const double x : r.x) ASSERT_LT(std::abs(x), 0.2);  // the last sample is a crest of 1
-  for (size_t i = 0; i < t.size(); ++i) ASSERT_NEAR(l.x[i], line[i], 1e-9);
+  for (size_t i = 0; i < t.size(); ++i) {
+    ASSERT_TRUE(t[i] < 0.01 || std::abs(r.x[i]) < 0.2) << t[i];  // the last sample is a crest of 1
+    ASSERT_NEAR(l.x[i], line[i], t[i] > 0.04 && t[i] < 0.26 ? 1e-9 : 0.06);
+  }
+}
+
+// Exact: the same pulse inside a longer record, and a crest is not exceeded.
+TEST(Cfc, ends_add_no_peak) {
+  const auto peak = [](double begin) {  // of a half sine of 100 g, 5 ms
+    std::vector<double> t, x;
+    for (int i = 0; i <= 5000; ++i) {
+      const double s = 1e-4 * i - begin;
+      t.push_back(1e-4 * i), x.push_back(s >= 0 && s <= 0.005 ? 100 * std::sin(M_PI * s / 0.005) : 0);
+    }
+    const Filtered f = cfc_filtered(t, x, 60, "test");
+    const auto top = std::max_element(f.x.begin(), f.x.end());
+    return std::pair{*top, f.by_ends[static_cast<size_t>(top - f.x.begin())]};
+  };
+  const auto [inside, no_share] = peak(0.05);
+  EXPECT_NEAR(inside, 70.24, 0.01);
+  EXPECT_LT(no_share, 1e-6);
+  for (const double begin : {0.0, 0.495}) {
+    EXPECT_NEAR(peak(begin).first, inside, 1e-3) << begin;
+    EXPECT_GT(peak(begin).second, 0.1) << begin;  // what the mirrored record would add
+  }
+  for (const double frequency : {20.0, 40.0}) {
+    std::vector<double> t, x;
+    for (int i = 0; i <= 2125; ++i) t.push_back(1e-4 * i), x.push_back(std::cos(2 * M_PI * frequency * (t.back() - 0.2125)));
+    for (const double y : cfc_filtered(t, x, 60, "test").x) ASSERT_LT(std::abs(y), 1.001) << frequency;
+  }
+}
+
+// Exact: the area times the response to an impulse, wherever the steps lie.
+TEST(Cfc, a_shock_shorter_than_other_steps_keeps_its_area) {
+  const auto peak = [](double middle) {  // of a triangle of 2000 g, 40 us wide, in rows of 1 ms
+    std::vector<double> t, x;
+    for (int i = 0; i <= 1000; ++i) {
+      t.push_back(1e-3 * i);
+      if (i == 500)
+        for (int k = -30; k <= 30; ++k)
+          if (middle + 2e-6 * k > 0.5 && middle + 2e-6 * k < 0.501) t.push_back(middle + 2e-6 * k);
+    }
+    for (const double s : t) x.push_back(std::max(0.0, 2000 * (1 - std::abs(s - middle) / 20e-6)));
+    const Filtered f = cfc_filtered(t, x, 60, "test");
+    return *std::max_element(f.x.begin(), f.x.end());
+  };
+  std::vector<double> t, x;  // the same in even rows of 2 us
+  for (int i = 0; i <= 40000; ++i) t.push_back(2e-6 * i), x.push_back(std::max(0.0, 2000 * (1 - std::abs(t.back() - 0.04) / 20e-6)));
+  const Filtered even = cfc_filtered(t, x, 60, "test");
+  const double exact = *std::max_element(even.x.begin(), even.x.end());
+  EXPECT_NEAR(exact, 11.08, 0.01);
+  for (const double middle : {0.50002, 0.50004, 0.50006, 0.50025}) EXPECT_NEAR(peak(middle), exact, 0.003 * exact) << middle;
 }
 
 TEST(Cfc, a_record_with_fewer_than_ten_samples_per_class_is_refused) {

@@ -68,6 +68,22 @@ TEST(InjuryReport, a_measured_signal_is_judged_as_that_of_a_run_is) {
   EXPECT_NE(refused("t [s],x [g]\n1,1\n0,2\n").find("time does not rise in row 2"), std::string::npos);
 }
 
+TEST(InjuryReport, a_peak_that_an_end_of_the_record_makes_and_axes_without_a_column_are_told) {
+  const auto& place = sample_place();
+  const auto told = [&](double begin) {  // half sine of 100 g, 5 ms
+    std::string csv = "t [s],z [g]\n";
+    for (int i = 0; i <= 2000; ++i) {
+      const double s = 1e-4 * i - begin;
+      csv += fmt::format("{:.4f},{:.9g}\n", 1e-4 * i, s >= 0 && s <= 0.005 ? 100 * std::sin(M_PI * s / 0.005) : 0);
+    }
+    place.write("ends.csv", csv);
+    return succeeded(place.run("hilo-post gload ends.csv")).err;
+  };
+  EXPECT_NE(told(-0.0025).find(" g at 0 s, lies near the start of the record"), std::string::npos);
+  EXPECT_EQ(told(0.05).find("of the record"), std::string::npos);
+  EXPECT_NE(told(0.05).find("sensor \"ends\": no column for x and y, taken as 0 g"), std::string::npos);
+}
+
 TEST(InjuryReport, tells_how_far_a_pulse_leaves_its_corridor) {
   const auto& place = sample_place();
   place.write("corridor.csv", "t [s],x_low [g],x_high [g]\n0,-1,1\n0.0199,-1,80\n0.0201,-1,80\n");  // over by the time of the peak
