@@ -15,6 +15,7 @@
 #include "post/commands/commands.hpp"
 #include "post/files/csv.hpp"
 #include "post/files/output.hpp"
+#include "post/run/field_peak.hpp"
 #include "post/run/locate.hpp"
 #include "post/scene/shown_field.hpp"
 
@@ -141,6 +142,7 @@ void run(const AtOptions& o) {
   std::vector<bool> wanted = shown_regions(file.mesh, o.show, o.hide);
   for (size_t r = 0; r < wanted.size(); ++r)
     if (shown.field.flexible_only && file.fidelity[r] == Fidelity::rigid) wanted[r] = false;
+  std::ignore = warn_of_envelope(run, wanted, o.field);
   const Places at = places(o, run, wanted, shown.field.label);
 
   const size_t n_values = shown.columns.size();

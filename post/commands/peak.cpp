@@ -54,13 +54,16 @@ void run(const PeakOptions& o) {
       for (const std::int64_t n : run.own_nodes(r)) value.at(static_cast<size_t>(n)) = 0;  // it is that of another region
     return value;
   };
+  const std::vector<bool> sharing = warn_of_envelope(run, shown, of_all ? envelope : o.field);
+  for (size_t r = 0; r < shown.size() && !of_all; ++r)
+    if (sharing[r]) shown[r] = false;  // it would be that of another region
   auto peaks = of_all ? field_peaks(run, {steps.back()}, shown, largest_of_all) : of_steps(shown);
   if (of_all) {
     const auto t = run.field(steps.back(), envelope + "_time").value;
     for (FieldPeak& p : peaks)
       if (p.place >= 0) p.t = t.at(static_cast<size_t>(p.place));
     std::vector<bool> others = shown;  // that no envelope has: beams, and nodes of which it has the stress of another region
-    for (size_t r = 0; r < n_own; ++r) others[r] = shown[r] && o.field == "von_mises" && !run.own_nodes(static_cast<int>(r)).empty();
+    for (size_t r = 0; r < n_own; ++r) others[r] = sharing[r];
     const auto theirs = of_steps(others);
     for (size_t r = 0; r < shown.size(); ++r)
       if (others[r] && (r >= n_own || std::abs(theirs[r].value) > std::abs(peaks[r].value))) peaks[r] = theirs[r];
@@ -70,6 +73,7 @@ void run(const PeakOptions& o) {
   const ShownUnit unit = o.unit.empty() ? handy_unit(field.unit, largest) : wanted_unit(field.unit, o.unit);
   Table table{
       {"region", fmt::format("{} [{}]", o.field, unit.name), "t [s]", of_cells ? "cell" : "node", "X [m]", "Y [m]", "Z [m]"}, {}, 1};
+  if (of_all) table.header.emplace_back("over");
   for (size_t r = 0; r < shown.size(); ++r) {
     if (peaks[r].place < 0) continue;
     Vec3 X = Vec3::Zero();
@@ -78,9 +82,13 @@ void run(const PeakOptions& o) {
     table.rows.push_back({mesh.region_name[r], fmt::format("{:.6g}", peaks[r].value * unit.factor), fmt::format("{:.6g}", peaks[r].t),
                           of_beams && r >= n_own ? "-" : fmt::format("{}", peaks[r].place), fmt::format("{:.5g}", X[0]),
                           fmt::format("{:.5g}", X[1]), fmt::format("{:.5g}", X[2])});
+    if (of_all) table.rows.back().emplace_back(r >= n_own || sharing[r] ? "steps written" : "all steps");
   }
   if (table.rows.empty())
-    throw Error(run.path, fmt::format("all regions asked for are rigid: they have no {}", field.label), "try --field acceleration");
+    throw Error(run.path,
+                fmt::format("all regions asked for are rigid{}: they have no {}",
+                            std::ranges::count(sharing, true) ? " or share their nodes" : "", field.label),
+                "try --field acceleration");
   write_out("-", o.json ? table.json().text() + "\n" : table.text());
 }
 

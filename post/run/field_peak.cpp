@@ -2,6 +2,7 @@
 #include "post/run/field_peak.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -36,6 +37,19 @@ std::vector<FieldPeak> field_peaks(RunFile& run, const std::vector<Step>& steps,
     }
   }
   return peaks;
+}
+
+std::vector<bool> warn_of_envelope(RunFile& run, const std::vector<bool>& shown, const std::string& field) {
+  std::vector<bool> sharing(shown.size());
+  std::vector<std::string> names;
+  for (size_t r = 0; r < shown.size() && field.starts_with("von_mises_envelope"); ++r)
+    if (shown[r] && !run.own_nodes(static_cast<int>(r)).empty()) sharing[r] = true, names.push_back(run.mesh().region_name[r]);
+  if (!names.empty())
+    warn(run.path,
+         fmt::format("the envelope has one value for each node, at those shared by regions that of the first: peaks of \"{}\" there "
+                     "are known at the steps written alone (peak --field von_mises; a shorter output.interval sees more)",
+                     fmt::join(names, "\", \"")));
+  return sharing;
 }
 
 }  // namespace hilo

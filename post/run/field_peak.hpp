@@ -16,4 +16,7 @@ struct FieldPeak {
 std::vector<FieldPeak> field_peaks(RunFile& run, const std::vector<Step>& steps, const std::vector<bool>& wanted,
                                    const std::function<std::vector<double>(const Step&, int region)>& values, bool of_cells = false);
 
+/// Regions, of those shown, whose stress at nodes shared with regions before them no envelope has: named in a warning.
+std::vector<bool> warn_of_envelope(RunFile& run, const std::vector<bool>& shown, const std::string& field);
+
 }  // namespace hilo

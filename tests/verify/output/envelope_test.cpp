@@ -126,5 +126,28 @@ TEST(Envelope, IsWhatPeakTells) {
   EXPECT_NE(c.run("hilo-post at all.h5 velocity_envelope --node 15").exit, 0);
 }
 
+// A clamped bar of three pieces, struck between two outputs.  The middle piece has all its nodes in common with others.
+TEST(Envelope, TellsRegionsWhoseNodesAreThoseOfOthers) {
+  const BlockOptions o{.n = {5, 1, 1}, .high = {1, 0.1, 0.1}, .regions = {"root", "tip", "weld"}, .region_of = [](const Vec3& x) {
+                         return x[0] < 0.4 ? 0 : x[0] > 0.6 ? 1 : 2;
+                       }};
+  SceneCase c(solid(2e11, 0.3, 7850) +
+              "[[motion]]\nkind = \"fixed\"\nname = \"clamp\"\non = \"xmin\"\n"
+              "[[load]]\nkind = \"force\"\nname = \"F\"\non = \"xmax\"\nforce = [0, 1e3, 0]\n"
+              "history = {t = [0, 0.01, 0.02, 1], value = [0, 1, 0, 0]}\n" +
+              in_time(0.1, 1e-3) + "[output]\ninterval = 1\nenvelope = true\n");
+  c.use(block_mesh(o), {Fidelity::linear, Fidelity::linear, Fidelity::linear});
+  c.solved();
+  const Ran all = c.run("hilo-post peak run.h5 --unit MPa");
+  EXPECT_NE(all.err.find("peaks of \"weld\" there are known at the steps written alone"), std::string::npos) << all.err;
+  EXPECT_NE(all.out.find("all steps"), std::string::npos) << all.out;
+  const auto row = all.out.find("weld");
+  ASSERT_NE(row, std::string::npos);
+  EXPECT_NE(all.out.find("steps written", row), std::string::npos) << all.out;
+  const Ran shown = c.run("hilo-post peak run.h5 --field von_mises_envelope");
+  EXPECT_EQ(shown.out.find("weld"), std::string::npos) << shown.out;
+  EXPECT_NE(shown.err.find("\"weld\""), std::string::npos) << shown.err;
+}
+
 }  // namespace
 }  // namespace hilo::test::envelope_test
