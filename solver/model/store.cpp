@@ -200,19 +200,19 @@ void sync(const std::string& path) {
 Store Store::create(const std::string& path) {
   auto impl = std::make_unique<Impl>();
   check_output(path);
-  impl->path = path;
-  impl->on_disk = fmt::format("{}.tmp-{}", path, ::getpid());
+  impl->path = followed(path);
+  impl->on_disk = fmt::format("{}.tmp-{}", impl->path, ::getpid());
   impl->file = create_file(path, impl->on_disk, true);
   impl->writable = impl->temporary = true;
   return Store(std::move(impl));
 }
 
-std::string unpublished(const std::string& path) { return path + ".new"; }
+std::string unpublished(const std::string& path) { return followed(path) + ".new"; }
 
 Store Store::create_growing(const std::string& path) {
   auto impl = std::make_unique<Impl>();
   check_output(path);
-  impl->path = path, impl->on_disk = unpublished(path);
+  impl->path = followed(path), impl->on_disk = unpublished(impl->path);
   impl->lock_output();
   impl->temporary = true;
   impl->file = create_file(path, impl->on_disk, false);

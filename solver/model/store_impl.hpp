@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
@@ -16,6 +17,9 @@
 #include "model/store.hpp"
 
 namespace hilo {
+
+/// What a symbolic link names, through others; another path as it is.  Files are written there, and the link stays.
+std::string followed(const std::string& path);
 
 /// An HDF5 handle that closes itself.
 class Id {

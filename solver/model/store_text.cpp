@@ -13,7 +13,7 @@
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "model/inputs.hpp"
-#include "model/store.hpp"
+#include "model/store_impl.hpp"
 
 namespace hilo {
 namespace fs = std::filesystem;
@@ -91,8 +91,15 @@ std::string relative_to(const std::string& from, const std::string& file) {
   return (folder_of(file) / fs::path(file).filename()).lexically_relative(folder_of(from)).string();
 }
 
+std::string followed(const std::string& path) {
+  fs::path p = path;
+  std::error_code failed;
+  for (int k = 0; k < 40 && fs::is_symlink(fs::symlink_status(p, failed)); ++k) p = p.parent_path() / fs::read_symlink(p, failed);
+  return p.string();
+}
+
 std::string resolved_from(const std::string& from, const std::string& relative) {
-  return (fs::path(from).parent_path() / relative).lexically_normal().string();
+  return (fs::path(followed(from)).parent_path() / relative).lexically_normal().string();
 }
 
 std::string digest(const std::string& path) {
@@ -109,10 +116,13 @@ void refuse_special(const std::string& path) {
   if (type == fs::file_type::directory) throw Error(path, "cannot write: is a folder", "", Exit::resources);
   if (type != fs::file_type::regular && type != fs::file_type::not_found && type != fs::file_type::none)
     throw Error(path, "cannot write: a device or pipe is in its place", "name a regular file", Exit::resources);
+  const std::string target = followed(path);
+  if (fs::is_symlink(fs::symlink_status(target, ignored)) || fs::exists(path, ignored) != fs::exists(target, ignored))
+    throw Error(path, "cannot write: a link in its place leads to no file with a name", "name a regular file", Exit::resources);
 }
 
 void write_text_file(const std::string& path, const std::string& text) {
-  const std::string temporary = fmt::format("{}.tmp-{}", path, ::getpid());
+  const std::string target = followed(path), temporary = fmt::format("{}.tmp-{}", target, ::getpid());
   const auto fail = [&](int error) {
     ::unlink(temporary.c_str());
     throw Error(path, fmt::format("cannot write: {}", std::strerror(error)), "", Exit::resources);
@@ -131,7 +141,7 @@ void write_text_file(const std::string& path, const std::string& text) {
     done += static_cast<size_t>(n);
   }
   if (::close(d) != 0) fail(errno);
-  if (::rename(temporary.c_str(), path.c_str()) != 0) fail(errno);
+  if (::rename(temporary.c_str(), target.c_str()) != 0) fail(errno);
 }
 
 std::string read_text_file(const std::string& path, const std::string& where) {

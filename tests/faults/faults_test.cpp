@@ -138,6 +138,33 @@ TEST_F(Faults, APlaceThatCannotBeWrittenIsNamed) {
   refused("hilo-part tags.h5 -n 1 -o two.inp/parts.h5", resources, "two.inp/parts.h5: cannot write: Not a directory");
 }
 
+TEST_F(Faults, ALinkInPlaceOfTheOutputStaysAndWhatItNamesIsWritten) {
+  make_tags();
+  std::filesystem::create_directory(folder / "d");
+  const auto written = [&](const std::string& name, const std::string& command, bool there) {
+    std::filesystem::create_symlink("d/" + name, folder / name);
+    if (there) put("d/" + name, "former");
+    ASSERT_EQ(work.run(command).exit, 0) << command;
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / name)) << command;
+    EXPECT_GT(std::filesystem::file_size(folder / "d" / name), 20u) << command;
+  };
+  for (const bool there : {true, false}) {
+    written("linked.h5", "hilo-tag two.h5 --rigid hull mast -o linked.h5", there);
+    EXPECT_EQ(work.run("hilo-show --check linked.h5").exit, 0);
+    EXPECT_EQ(work.run("hilo-show --check d/linked.h5").exit, 0) << "its link to the mesh is seen from where it lies";
+    written("run.h5", "hilo-solve scene.toml linked.h5 --quiet -o run.h5", there);
+    EXPECT_EQ(work.run("hilo-show --check run.h5").exit, 0);
+    EXPECT_EQ(work.run("hilo-show --check d/run.h5").exit, 0);
+    written("all.csv", "hilo-post series run.h5 energy -o all.csv", there);
+    for (const char* name : {"linked.h5", "run.h5", "all.csv"})
+      std::filesystem::remove(folder / name), std::filesystem::remove(folder / "d" / name);
+  }
+  std::filesystem::create_symlink("pipe.csv", folder / "to_pipe.csv");
+  ASSERT_EQ(::mkfifo((folder / "pipe.csv").c_str(), 0600), 0);
+  refused("hilo-tag two.h5 --rigid hull mast -o to_pipe.csv", resources, "to_pipe.csv: cannot write: ...");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "to_pipe.csv"));
+}
+
 TEST_F(Faults, ADeviceOrPipeInPlaceOfTheOutputIsNotReplaced) {
   make_mesh();
   ASSERT_EQ(::mkfifo((folder / "pipe.h5").c_str(), 0600), 0);
