@@ -90,26 +90,45 @@ constexpr const char* order_rule = "times must rise; two equal ones make a jump"
 
 }  // namespace
 
+namespace {
+
+/// Which of two headings names the time: "t [ms]" or "time"; the first where none does.
+size_t time_column(const std::vector<Field>& heading, const PlaceOf& at) {
+  bool is_time[2];
+  for (size_t i = 0; i < 2; ++i) {
+    std::string_view name = trim_cell(heading[i].text.substr(0, heading[i].text.find_first_of("[(")));
+    is_time[i] = name == "t" || name == "T" || name == "time" || name == "Time";
+  }
+  if (is_time[0] && is_time[1]) throw Error(at(1), "both columns are named as times", "write \"t,value\" above the numbers");
+  return is_time[1] ? 1 : 0;
+}
+
+}  // namespace
+
 HistoryTable read_history_csv(const std::string& path, const std::string& where) {
   HistoryTable h;
   bool header = false;
+  size_t first = 0;  // the column of the times
   const std::string last = each_line(path, where, [&](const std::vector<Field>& fields, const PlaceOf& at) {
     if (fields.size() != 2)
       throw Error(at(fields.size() > 2 ? 2 : 0),
                   fmt::format("{} column{} where two are expected: time and value", fields.size(), fields.size() == 1 ? "" : "s"));
-    double t = 0, value = 0;
-    const bool numeric = to_number(fields[0].text, t);
+    double x[2]{};
+    const bool numeric = to_number(fields[0].text, x[0]);
     if (!header) {
       if (numeric) throw Error(at(0), "no header line", "write \"t,value\" above the first numbers");
-      header = true;
-      for (size_t i = 0; i < 2; ++i) h.unit[i] = unit_in_heading(fields[i].text), h.place[i] = at(i);
+      header = true, first = time_column(fields, at);
+      for (size_t i = 0; i < 2; ++i) {
+        const size_t k = i == 0 ? first : 1 - first;
+        h.unit[i] = unit_in_heading(fields[k].text), h.place[i] = at(k);
+      }
       return;
     }
-    if (!numeric) throw Error(at(0), fmt::format("\"{}\" is not a number", fields[0].text));
-    if (!to_number(fields[1].text, value)) throw Error(at(1), fmt::format("\"{}\" is not a number", fields[1].text));
-    h.t.push_back(t);
-    h.value.push_back(value);
-    if (const auto why = disorder(h.t, h.t.size() - 1); !why.empty()) throw Error(at(0), why, order_rule);
+    for (size_t i = 0; i < 2; ++i)
+      if (!to_number(fields[i].text, x[i])) throw Error(at(i), fmt::format("\"{}\" is not a number", fields[i].text));
+    h.t.push_back(x[first]);
+    h.value.push_back(x[1 - first]);
+    if (const auto why = disorder(h.t, h.t.size() - 1); !why.empty()) throw Error(at(first), why, order_rule);
   });
   if (h.t.empty()) throw Error(last, "no times and values", "a header line, then lines \"t,value\"");
   return h;
@@ -189,8 +208,9 @@ double second_of(const HistoryTable& table, const std::string& system) {
 }
 
 /// A history is a factor on a value in the units of the scene: its own unit must be that, or `scale` must say what it is.
-void check_value_unit(const HistoryTable& table, const Entry& e, const std::string& system) {
-  if (table.unit[1].empty() || e.given("scale")) return;
+/// Returns that unit in SI, "" where it is not said.
+std::string value_unit(const HistoryTable& table, const Entry& e, const std::string& system) {
+  if (table.unit[1].empty() || e.given("scale")) return "";
   const auto unit = named_unit(table.unit[1]);
   if (!unit)
     throw Error(table.place[1], fmt::format("the unit \"{}\" is not known", table.unit[1]),
@@ -199,9 +219,31 @@ void check_value_unit(const HistoryTable& table, const Entry& e, const std::stri
   if (std::abs(factor - 1) > 1e-12)
     throw Error(table.place[1], fmt::format("values in {}, not in {} of {}", unit->name, unit->unit, system),
                 fmt::format("scale = {:g} beside `file` converts them", factor));
+  return std::string(unit->unit);
 }
 
 }  // namespace
+
+void check_history_unit(const Entry& e, const Surroundings& around) {
+  if (!e.given("history")) return;
+  const Value& history = e.values.find("history")->second;
+  const auto found = around.value_units.find(history.texts.empty() ? history.place.text() : history.texts[0]);
+  if (found == around.value_units.end() || found->second == "1") return;
+  std::string scaled;
+  for (const KindSchema& s : scene_schema()) {
+    if (s.section != e.section || s.kind != e.kind) continue;
+    for (const Param& p : s.params)
+      for (const char* key :
+           {"force", "torque", "traction", "pressure", "force_per_length", "acceleration", "displacement", "angle", "spin", "velocity"}) {
+        if (p.key != key || !e.given(key)) continue;
+        if (p.unit == found->second) return;
+        scaled = fmt::format("{} in {}", key, p.unit);
+      }
+  }
+  if (!scaled.empty())
+    throw Error(e.where("history"), fmt::format("{}: its history has values in {}, and scales {}", e.label(), found->second, scaled),
+                "take another column; a factor has no unit in its heading");
+}
 
 History history_of(const Entry& e, const std::string& label, const Surroundings& around) {
   const auto fail = [&](std::string_view key, const std::string& what, const std::string& hint) -> History {
@@ -214,8 +256,9 @@ History history_of(const Entry& e, const std::string& label, const Surroundings&
     const auto table =
         read_history_csv((around.folder == "." ? file : std::filesystem::path(around.folder) / file).string(), e.where("file"));
     const double second = second_of(table, around.units);
-    check_value_unit(table, e, around.units);
     h.t = table.t, h.value = table.value;
+    if (const std::string unit = value_unit(table, e, around.units); !unit.empty())
+      around.value_units[e.name.empty() ? e.place.text() : e.name] = unit;
     for (double& t : h.t) t *= second;
   } else if (e.has("t") && e.has("value")) {
     h.t = e.numbers("t");

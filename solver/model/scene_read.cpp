@@ -167,6 +167,7 @@ Entry read_entry(std::string_view section, const toml::table& table, const std::
     v.place = place;
     entry.values.emplace(param.key, std::move(v));
   }
+  check_history_unit(entry, around);
   return entry;
 }
 

@@ -25,6 +25,7 @@ struct Surroundings {
     std::optional<Value> fallback;
   };
   mutable std::unordered_map<const Param*, Known> known;
+  mutable std::map<std::string, std::string> value_units;  // in SI, of histories whose file says it: by name, and by where they are used
 };
 
 /// Check a TOML value against its parameter and convert it to SI; `label` says whose value it is.
@@ -38,6 +39,8 @@ Entries read_sections(const toml::table& root, Surroundings& around);
 
 /// The history a [history.NAME] or inline table describes: its points, or those of its CSV file.
 History history_of(const Entry& entry, const std::string& label, const Surroundings& around);
+/// Error where the file of an entry's history says values of another unit than the key has that it scales.
+void check_history_unit(const Entry& entry, const Surroundings& around);
 /// Two columns of a CSV file: times and values, as written, and the units in their headings ("" without one) with their places.
 struct HistoryTable {
   std::vector<double> t, value;

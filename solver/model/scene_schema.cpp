@@ -293,7 +293,7 @@ std::vector<KindSchema> make_schema() {
        {name,
         on,
         {"at", vector3, "m", "", "point on a body; mean of the nodes, of a region its centre of mass, of a beam its axis, when absent"},
-        {"x", vector3, "1", "[1, 0, 0]", "forward axis at the start (ISO 8855)"},
+        {"x", vector3, "1", "[1, 0, 0]", "forward axis at the start (ISO 8855); its part normal to z counts"},
         {"z", vector3, "1", "[0, 0, 1]", "upward axis at the start (ISO 8855)"}}});
   s.push_back({"probe",
                "",
@@ -311,9 +311,9 @@ std::vector<KindSchema> make_schema() {
        {{"t", numbers, "s", "", "rising times; two equal ones make a jump"},
         {"value", numbers, "", "", "values, in the unit of what the history scales (1 for a factor)"},
         {"file", text, "", "",
-         "CSV file with a header line and two columns: t, value.  A unit of time in the header (t [ms]) is converted; one of values must "
-         "be that "
-         "of the scene, or stand beside `scale`"},
+         "CSV file with a header line and two columns: t (or time) and a value, in this order where none is named so.  A unit of time in "
+         "the "
+         "header (t [ms]) is converted; one of values must be that of what it scales in units of the scene, or stand beside `scale`"},
         {"scale", number, "1", "1", "factor on the values"},
         {"interpolation", text, "", "linear",
          "linear; smooth (cosine ramps) or smoother (ramps with three continuous derivatives), which stand still at every point and "

@@ -107,7 +107,11 @@ History factor(const Reading& r) {
   }
   if (const auto* table = node.as_table()) {
     const std::string owner = r.label + ": history";
-    return history_of(read_entry("history", *table, "", place_of_node(node), r.around, owner), owner, r.around);
+    const Place there = place_of_node(node);
+    History h = history_of(read_entry("history", *table, "", there, r.around, owner), owner, r.around);
+    if (const auto unit = r.around.value_units.find(there.text()); unit != r.around.value_units.end())
+      r.around.value_units[r.item.place.text()] = unit->second;
+    return h;
   }
   r.wrong_type(node, "a history: a name, a number or a table");
 }

@@ -188,6 +188,8 @@ TEST_F(Mistake, InACsvFileIsReportedInThatFile) {
   EXPECT_EQ(csv("t (s), F (stone)\n0,0\n1,1\n"),
             "load.csv:1:8: the unit \"stone\" is not known (take it out of the heading, or give `scale`, what one of it is in the units of "
             "the scene)");
+  EXPECT_EQ(csv("t,time [s]\n0,0\n1,1\n"), "load.csv:1:3: both columns are named as times (write \"t,value\" above the numbers)");
+  EXPECT_EQ(csv("F,t [m]\n0,0\n1,1\n"), "load.csv:1:3: \"m\" is no unit of time (s, ms, us, min or h)");
   EXPECT_EQ(refusal("[history.h]\nfile = \"lod.csv\"\n"),
             "scene.toml:2:1: no file lod.csv (paths in a scene are relative to the scene's folder)");
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scene is read whole, in SI units, with its defaults and what overrides say.
+#include <fmt/format.h>
+
 #include <iostream>
 #include <sstream>
 
@@ -108,6 +110,15 @@ TEST_F(SceneText, UnitsInTheHeaderOfALoadAreConvertedAndATableThatEndsEarlyIsTol
   EXPECT_DOUBLE_EQ(history(of("t [s];f [kN]\n0;0\n.5;2\n", "scale = 1000\n")).value.back(), 2000);
   EXPECT_DOUBLE_EQ(history(of("t [ms],\"sensor.seat, \"\"left\"\".x [N]\"\n0,\"0\"\n500,2\n", "")).t.back(), 0.5)
       << "quotes as series writes them";
+  for (const char* csv : {"F [N],t [ms]\n0,0\n2,500\n", "value,time (s)\n0,0\n2,0.5\n", "x,t\n0,0\n2,.5\n"}) {
+    const History h = history(of(csv, ""));
+    EXPECT_DOUBLE_EQ(h.t.back(), 0.5) << csv;
+    EXPECT_DOUBLE_EQ(h.value.back(), 2) << csv;
+  }
+  for (const char* unit : {"Pa", "kg", "m/s", "s"})  // of a force
+    EXPECT_THROW(of(fmt::format("t,x [{}]\n0,0\n.5,2\n", unit), ""), Error) << unit;
+  EXPECT_THROW(load("[time]\nend = 0.5\nstep = 1e-3\n" + pull + "history = {file = \"load.csv\"}\n"), Error) << "in its own table";
+  EXPECT_NO_THROW(of("t,x [1]\n0,0\n.5,2\n", ""));
   const auto ends = [&](const std::string& csv) {
     const Scene s = of(csv, "");
     return std::count_if(s.warnings.begin(), s.warnings.end(), [](const std::string& w) { return w.find("the table ends at") != w.npos; });
