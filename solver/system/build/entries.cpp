@@ -5,12 +5,37 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "system/build/builder.hpp"
 #include "system/point_masses.hpp"
 #include "system/stations.hpp"
 
 namespace hilo {
+namespace {
+
+/// A point that is farther from the node it is taken for than half of the largest cell there.  Collective.
+void warn_of_distance(const Entry& e, int nearest, const LocalMesh& mesh, const std::vector<Vec3>& X_of, const Comm& comm) {
+  double far[4] = {-1e300, -1e300, -1e300, 0}, size = 0;  // of the rank that owns the node; the last is half of the cell
+  if (nearest >= 0) {
+    const Vec3& X = X_of[nearest];
+    for (std::int64_t c = 0; c < mesh.mesh.n_cells(); ++c) {
+      const auto nodes = mesh.mesh.cell(c);
+      if (std::ranges::find(nodes, std::int64_t{nearest}) == nodes.end()) continue;
+      for (const std::int64_t n : nodes) size = std::max(size, (X_of[n] - X).norm());
+    }
+    std::copy_n(X.data(), 3, far), far[3] = size / 2;
+  }
+  comm.max(far);
+  const Vec3 X(far);
+  const double d = (X - e.vector3("at")).norm();
+  if (d > far[3] * (1 + 1e-9) && d > 1e-9 * mesh.length)
+    warn(e.where("at"), fmt::format("{}: the nearest node of \"{}\" is {:.3g} m away, at ({:.4g}, {:.4g}, {:.4g}): that is what is told",
+                                    e.label(), e.text("on"), d, X[0], X[1], X[2]));
+}
+
+}  // namespace
+
 const History& Builder::use_history(const Entry& e, Acts acts) {
   const History& h = e.history("history");
   const bool is_static = this->is_static();
@@ -87,6 +112,12 @@ void Builder::add_stations() {
         const Vec3 z = direction(e, "z"), x = direction(e, "x");
         if (std::abs(x.dot(z)) > 1 - 1e-9) throw Error(e.where("x"), e.label() + ": x is parallel to z");
         s.axes = frame_of_axis(z, x);
+        if (const double tilt = std::asin(std::clamp(x.dot(z), -1.0, 1.0)) * 180 / std::numbers::pi; std::abs(tilt) > 1)
+          warn(e.where(e.given("x") ? "x" : "z"),
+               fmt::format(
+                   "{}: x is {:.3g} degrees off the plane normal to z, and is taken as its part in that plane (give both, at a right "
+                   "angle, for a sensor that is tilted)",
+                   e.label(), std::abs(tilt)));
       }
       if (found.body >= 0) {
         s.body = found.body;
@@ -97,7 +128,9 @@ void Builder::add_stations() {
         if (s.sensor)
           throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, and a single point of it has no axes", e.label(), e.text("on")),
                       found.is_region ? "name a set of nodes there" : "without at it is the mean of the set, whose axes turn with it");
-        if (const int nearest = nearest_owned(found.nodes, e.vector3("at")); nearest >= 0) s.nodes.emplace_back(nearest, 1);
+        const int nearest = nearest_owned(found.nodes, e.vector3("at"));
+        if (nearest >= 0) s.nodes.emplace_back(nearest, 1);
+        warn_of_distance(e, nearest, *mesh_, out_->X, comm_);
         s.mean = e.vector3("at");
       } else {
         s.nodes = shares_of(found);

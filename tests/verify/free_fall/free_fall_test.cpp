@@ -70,5 +70,20 @@ TEST(FreeFallSensor, OnAnEdgeHasAxesThatStay) {
   EXPECT_LT((r.history("sensor/edge") - r.history("probe/edge").rightCols(3) / g0).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+// What is not where it was asked for, and not turned as it was asked for, is told.
+TEST(FreeFallSensor, AWayToTheNearestNodeAndATiltThatIsDroppedAreTold) {
+  SceneCase c(
+      solid(2e9, 0.3, 1000, "block") + "[[probe]]\nname = \"far\"\non = \"xmax\"\nat = [1, 4, 0]\n" +
+      "[[probe]]\nname = \"near\"\non = \"xmax\"\nat = [1, 0.6, 0.6]\n" +
+      "[[sensor]]\nname = \"tilted\"\non = \"xmax\"\nx = [1, 0, 0.5]\n[[sensor]]\nname = \"right\"\non = \"xmax\"\nx = [1, 0, 0.01]\n" +
+      in_time(1e-3, 1e-3));
+  c.use(block_mesh({}), {Fidelity::nonlinear});
+  const Ran ran = c.solve();
+  EXPECT_NE(ran.err.find("probe \"far\": the nearest node of \"xmax\" is 3 m away, at (1, 1, 0)"), std::string::npos) << ran.err;
+  EXPECT_EQ(ran.err.find("probe \"near\""), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("sensor \"tilted\": x is 26.6 degrees off the plane normal to z"), std::string::npos) << ran.err;
+  EXPECT_EQ(ran.err.find("sensor \"right\""), std::string::npos) << ran.err;
+}
+
 }  // namespace
 }  // namespace hilo::test::free_fall_test
