@@ -116,6 +116,11 @@ void run(const CompareOptions& o) {
     if (shared == 0) throw Error(all[k].path, fmt::format("has no {} in common with {}", first.x_title, first.path));
     if (!is_quiet() && shared < row[k].size())
       fmt::print(stderr, "{}: {} of its {} rows are at a {} of {}\n", all[k].path, shared, row[k].size(), first.x_title, first.path);
+    std::vector<bool> met(first.x.size());
+    for (const size_t i : row[k])
+      if (i != nowhere) met[i] = true;
+    if (const auto alone = std::count(met.begin(), met.end(), false); alone > 0)
+      warn(all[k].path, fmt::format("{} of the {} rows of {} are not in it, and not compared", alone, met.size(), first.path));
   }
   Table table{{"column", "of", "start", "peak", "off by", "in % of peak", "at " + first.x_title}, {}, 2};
   for (const auto& [title, truth] : first.y) {
@@ -131,10 +136,18 @@ void run(const CompareOptions& o) {
     for (size_t k = 1; k < all.size(); ++k) {
       const auto& values = *all[k].find(title);
       double off = -1, at = NAN;
+      size_t holes = 0;
       for (size_t j = 0; j < values.size(); ++j) {
         if (row[k][j] == nowhere) continue;
+        if (!std::isfinite(values[j]) || !std::isfinite(truth[row[k][j]])) {
+          ++holes;
+          continue;
+        }
         if (const double d = std::abs(values[j] - truth[row[k][j]]); d > off) off = d, at = all[k].x[j];
       }
+      if (holes > 0)
+        warn(all[k].path, fmt::format("\"{}\": {} of {} rows {} no number in one of the two, and {} not compared", title, holes,
+                                      values.size(), holes == 1 ? "has" : "have", holes == 1 ? "is" : "are"));
       table.rows.push_back({title, all[k].name, six_digits(values.front()), six_digits(peak_of(values)), six_digits(off < 0 ? NAN : off),
                             six_digits(off < 0 || peak == 0 ? NAN : 100 * off / peak), six_digits(at)});
     }

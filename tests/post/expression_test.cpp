@@ -146,6 +146,18 @@ TEST(Compare, FindsWhereTablesAreFarthestApartAtSharedInstantsOnly) {
   EXPECT_NE(ran.out.find(R"("off by": 0.5, "in % of peak": 25, "at t [s]": 1})"), std::string::npos) << ran.out;
 }
 
+TEST(Compare, RowsThatAreNotComparedAreTold) {
+  const Workplace place;
+  place.write("a.csv", "t [s],a [N]\n0,0\n1,1\n2,4\n3,9\n");
+  place.write("short.csv", "t [s],a [N]\n0,0\n1,1\n");
+  place.write("hole.csv", "t [s],a [N]\n0,0\n1,1\n2,\n3,9\n");
+  const Ran brief = succeeded(place.run("hilo-post compare a.csv short.csv")),
+            hole = succeeded(place.run("hilo-post compare a.csv hole.csv"));
+  EXPECT_NE(brief.err.find("short.csv: 2 of the 4 rows of a.csv are not in it, and not compared"), std::string::npos) << brief.err;
+  EXPECT_NE(hole.err.find("hole.csv: \"a [N]\": 1 of 4 rows has no number in one of the two, and is not compared"), std::string::npos)
+      << hole.err;
+}
+
 TEST(Compare, TablesWithoutASharedInstantOrColumnAreRefused) {
   const Workplace place;
   place.write("a.csv", "t [s],a [N]\n0,1\n1,-4\n");
