@@ -40,8 +40,12 @@ Corridor read_corridor(const std::string& path) {
     if (!has(low) && !has(high)) continue;
     const auto in_g = [&](const std::string& name) { return table.numbers_in("g", table.find(name), "g", "[g] or [m/s^2]"); };
     Corridor::Side side{t, in_g(low), in_g(high)};
-    for (size_t i = 0; i < t.size(); ++i)
+    for (size_t i = 0; i < t.size(); ++i) {
+      if (std::isnan(side.low[i]) || std::isnan(side.high[i]))
+        throw Error(path, fmt::format("{} has an empty cell at t = {:g}", std::isnan(side.low[i]) ? low : high, t[i]),
+                    "fill it, or leave the row out");
       if (!(side.low[i] <= side.high[i])) throw Error(path, fmt::format("{} is above {} at t = {:g}", low, high, t[i]));
+    }
     c.axis[a] = std::move(side);
   }
   if (!c.axis[0] && !c.axis[1] && !c.axis[2]) throw Error(path, "no corridor in it", "columns t, x_low, x_high (or y_, z_)");

@@ -42,7 +42,12 @@ std::vector<size_t> within(const std::vector<double>& t, const std::string& span
   std::vector<size_t> chosen;
   for (size_t k = 0; k < t.size(); ++k)
     if (t[k] >= from - slack && t[k] <= to + slack) chosen.push_back(k);
-  if (chosen.empty()) throw Error("--times", fmt::format("{} holds no {} of the run", span, what), "see output.interval of the scene");
+  if (chosen.empty()) {
+    double spacing = 0;
+    for (size_t k = 1; k < t.size(); ++k) spacing = std::max(spacing, t[k] - t[k - 1]);
+    throw Error("--times", fmt::format("{} holds no {} of the run", span, what),
+                fmt::format("there are {} from {:g} to {:g} s, up to {:.3g} s apart", t.size(), t.front(), t.back(), spacing));
+  }
   return chosen;
 }
 

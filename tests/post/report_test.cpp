@@ -86,6 +86,8 @@ TEST(InjuryReport, a_peak_that_an_end_of_the_record_makes_and_axes_without_a_col
 
 TEST(InjuryReport, tells_how_far_a_pulse_leaves_its_corridor) {
   const auto& place = sample_place();
+  place.write("hole.csv", "t [s],x_low [g],x_high [g]\n0,-1,1\n0.01,,80\n");
+  EXPECT_NE(place.run("hilo-post injury run.h5 --corridor hole.csv").err.find("x_low has an empty cell at t = 0.01"), std::string::npos);
   place.write("corridor.csv", "t [s],x_low [g],x_high [g]\n0,-1,1\n0.0199,-1,80\n0.0201,-1,80\n");  // over by the time of the peak
   succeeded(place.run("hilo-post --quiet injury run.h5 --cfc 1000 --corridor corridor.csv --png within.png -o out.csv"));
   const CsvTable table = read_csv(place / "out.csv");
