@@ -88,13 +88,19 @@ double dynamic_response_index(std::span<const double> t, std::span<const double>
 HeadInjury head_injury(std::span<const double> t, std::span<const double> a, double window) {
   const std::vector<double> I = integral(t, a);
   HeadInjury best;
-  for (size_t i = 0; i < t.size(); ++i)
+  std::deque<size_t> falling;  // samples of the window from i on that can still be its largest, largest first
+  for (size_t i = 0, ahead = 0; i < t.size(); ++i) {
+    for (; ahead < t.size() && t[ahead] - t[i] <= window * (1 + 1e-12); falling.push_back(ahead++))
+      while (!falling.empty() && a[falling.back()] <= a[ahead]) falling.pop_back();
+    if (falling.front() < i) falling.pop_front();
+    if (window * std::pow(std::max(0.0, a[falling.front()]), 2.5) <= best.value) continue;  // no mean is more
     for (size_t j = i + 1; j < t.size() && t[j] - t[i] <= window * (1 + 1e-12); ++j) {
       const double span = t[j] - t[i];
       if (!(span > 0)) continue;
       const double mean = std::max(0.0, (I[j] - I[i]) / span), fifth = mean * mean * mean * mean * mean;
       if (span * span * fifth > best.value * best.value) best = {span * std::sqrt(fifth), t[i], t[j]};
     }
+  }
   return best;
 }
 
