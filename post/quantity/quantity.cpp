@@ -126,12 +126,15 @@ void evaluate(const Entry& q, RunFile& run, QuantityValue& v) {
   if (q.kind == "rms") {
     v.value = rms(c);
   } else if (q.kind == "at") {
-    v.t = q.number("t");
+    v.t = v.until = q.number("t");
     if (v.t > c.t.back() * (1 + 1e-9)) throw Error(q.where("t"), fmt::format("its history ends at {:g} s", c.t.back()));
     v.value = interpolate(c.t, c.value, std::vector{v.t}).front();
   } else {
     const size_t i = peak_index(c.value);
     v.value = c.value[i], v.t = c.t[i];
+    size_t last = c.value.size() - 1;
+    while (std::abs(c.value[last]) < std::abs(v.value) / 2) --last;
+    v.until = c.t[last];
   }
 }
 

@@ -15,6 +15,7 @@ enum class Measured { other, raw_acceleration, stress };
 struct QuantityValue {
   std::string name, kind, of, unit;                                    // "hinge force", "peak", "joint hinge: force", "N"
   double value = std::numeric_limits<double>::quiet_NaN(), t = value;  // t: of a peak or a value at a time  [s]
+  double until = t;                                                    // of a peak: the last instant at half of it or more; else t  [s]
   std::string tolerance;                                               // as written
   double allowed = std::numeric_limits<double>::quiet_NaN();           // [unit]
   Measured measured = Measured::other;

@@ -9,12 +9,12 @@ import tempfile
 from advised import BIN, hinge, levels, peak, refused, told, values, write
 
 
-def scene(sizes, turn, names="abc", metre=1, second=1):
+def scene(sizes, turn, names="abc", metre=1, second=1, cells=4):
     """Bars of square section on hinges, one behind the other; the first hinge turns within .4 s."""
     text = f'gravity = [0, 0, {-9.81 * metre / second**2}]\n[material.steel]\nE = {2e11 / metre / second**2}\nnu = 0.3\ndensity = {7800 / metre**3}\n'
     for k, name in enumerate(names):
         text += f'[section.{name}]\nkind = "rectangle"\nwidth = {sizes[k] * metre}\nheight = {sizes[k] * metre}\n'
-        text += f'[beam.{name}]\npoints = [[{k * metre}, 0, 0], [{(k + 1) * metre}, 0, 0]]\ncells = [4]\nsection = "{name}"\nmaterial = "steel"\n'
+        text += f'[beam.{name}]\npoints = [[{k * metre}, 0, 0], [{(k + 1) * metre}, 0, 0]]\ncells = [{cells}]\nsection = "{name}"\nmaterial = "steel"\n'
         text += f'damping = {1.2e-5 * second}\n'
         text += hinge(f"j{k}", "ground" if k == 0 else names[k - 1] + ".end", name + ".0", [k * metre, 0, 0])
         if k == 0:
@@ -25,8 +25,9 @@ def scene(sizes, turn, names="abc", metre=1, second=1):
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    for sizes, turn, level in (((0.05, 0.05, 0.05), 1, "linear"), ((0.004, 0.02, 0.05), 1.5, "nonlinear")):
-        write(scene(sizes, turn))
+    # of few cells a run of all of them is the cheapest: those of stout bars are many
+    for sizes, turn, cells, level in (((0.05, 0.05, 0.05), 1, 24, "linear"), ((0.004, 0.02, 0.05), 1.5, 4, "nonlinear")):
+        write(scene(sizes, turn, cells=cells))
         advice = told("--apply", "rules.toml", "--work", f"{level}.work")
         chosen = levels(advice)
         assert set(chosen.values()) <= {"rigid", "linear", "nonlinear"}, chosen
@@ -57,7 +58,7 @@ with tempfile.TemporaryDirectory() as folder:
         assert abs(one["value"] / other["value"] - 1) < 1e-3, (one, other)
     # and what it says to write
     write(f'units = "mm-kg-ms"\n' + scene((0.05, 0.05), 1, "ab", 1000, 1000).replace("step = 1.0", "step = 20"))
-    refused([2], ["time.step = 4"], "--tol", "0.1%")
+    refused([2], ["time.step = 0.6"], "--tol", "0.1%")
     # what no level mends is told once, as the solver tells it
     write(scene((0.05, 0.05), 1, "ab").replace('name = "j1"', 'name = "j1"\nstiffness = [1e6, 0, 0]'))
     ran = subprocess.run([os.path.join(BIN, "hilo-advise"), "scene.toml"], capture_output=True, text=True)

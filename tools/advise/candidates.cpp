@@ -63,6 +63,43 @@ constexpr Measure measures[] = {{"bend", [](double v) { return 0.03 * std::pow(v
                                 {"tension", [](double v) { return std::max(0.0, v - 1); }},
                                 {"shortening", [](double v) { return 10 * v; }}};
 
+struct Extent {
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+  double volume = 0;  // of bars their length
+};
+std::vector<Extent> extents(const Mesh& mesh) {
+  std::vector<Extent> out(mesh.region_name.size());
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
+    Extent& e = out[static_cast<size_t>(mesh.region[static_cast<size_t>(c)])];
+    for (const std::int64_t node : mesh.cell(c)) {
+      e.low = e.low.cwiseMin(mesh.X[static_cast<size_t>(node)]);
+      e.high = e.high.cwiseMax(mesh.X[static_cast<size_t>(node)]);
+    }
+    e.volume += std::abs(quality(mesh, c).volume);
+  }
+  return out;
+}
+
+/// Regions of the same names are the same parts where their boxes and volumes agree, but for what larger cells cut off of curved faces.
+void check_extent(const Mesh& mesh, const Mesh& finer, const std::string& path, const std::string& finer_path) {
+  constexpr double box = 0.1, volume = 0.25;  // shares of the diagonal and of the volume
+  const std::vector<Extent> mine = extents(mesh), its = extents(finer);
+  for (size_t r = 0; r < mine.size(); ++r) {
+    const Extent &a = mine[r], &b = its[r];
+    const double diagonal = (a.high - a.low).norm(), ratio = (b.high - b.low).norm() / diagonal;
+    const double apart = std::max((b.low - a.low).norm(), (b.high - a.high).norm());
+    if (apart <= box * diagonal && std::abs(b.volume - a.volume) <= volume * a.volume) continue;
+    const std::string place = fmt::format("region \"{}\" of {}", mesh.region_name[r], path);
+    if (std::abs(ratio - 1) > box)
+      throw Error(finer_path, fmt::format("is not the same part: {:.3g} times as large as {}", ratio, place),
+                  "import it with the same --units and --scale");
+    throw Error(finer_path,
+                fmt::format("is not the same part: its corners are up to {:.3g} m off {}, its volume is {:.3g} times as large", apart,
+                            place, b.volume / a.volume),
+                "the same model with smaller cells");
+  }
+}
+
 }  // namespace
 
 Candidates::Candidates(Options options)
@@ -83,6 +120,7 @@ Candidates::Candidates(Options options)
     const MeshFile finer = read_mesh_file(o_.finer);
     if (finer.mesh.region_name != mesh().region_name)
       throw Error(o_.finer, "has other regions than " + o_.mesh, "the same model with smaller cells");
+    check_extent(mesh(), finer.mesh, o_.mesh, o_.finer);
     refinement_ = std::cbrt(static_cast<double>(finer.mesh.n_cells()) / static_cast<double>(mesh().n_cells()));
     if (refinement_ < 1.2)
       throw Error(o_.finer, fmt::format("its cells are {:.3g} times as small: too near to estimate the error of the mesh", refinement_),
@@ -122,7 +160,8 @@ Candidates::Job Candidates::job(const Request& request) const {
   const Entry& time = scene_.table("time");
   std::vector<std::string> more;
   if (request.step != 1) more.push_back(fmt::format("time.step={:.17g}", written("s", time.number("step") * request.step)));
-  if (!time.given("error_estimate") && !time.given("tolerance")) more.push_back("time.error_estimate=\"never\"");  // a third of the time
+  if (!request.is_estimated && !time.given("error_estimate") && !time.given("tolerance"))
+    more.push_back("time.error_estimate=\"never\"");  // a third of the time
   bool stress = false;
   for (const Entry& q : scene_.entries("quantity")) stress = stress || q.has("stress");
   const double end = time.number("end");
@@ -281,6 +320,8 @@ void Candidates::read(Candidate& c, const std::string& name) const {
   const Parsed j = json_of_file(name + ".json");
   if (!is_complete(name)) c.ended = run.series("energy").t.back();
   c.seconds = j.value("processor_seconds", 0.0), c.unknowns = j.value("unknowns", 0.0);
+  if (const Parsed estimate = j.value("error_estimate", Parsed::object()); estimate.contains("largest_share"))
+    c.positions_off = estimate["largest_share"].is_number() ? estimate["largest_share"].get<double>() : c.positions_off;
   const double end = c.ended > 0 ? c.ended : c.end;
   c.cost = c.seconds * (end > 0 ? scene_.table("time").number("end") / end : 1);
   for (size_t r = 0; r < names().size(); ++r) {

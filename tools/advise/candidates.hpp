@@ -14,13 +14,14 @@
 namespace hilo {
 
 /// What is to be run: `step` scales the time step, `end` is where the run ends, 0: where the scene says  [s]; `modes` scales how many modes
-/// the linear regions in `richer` may have; `finer`: on the finer mesh.
+/// the linear regions in `richer` may have; `finer`: on the finer mesh; `is_estimated`: the solver estimates the error of positions too.
 struct Request {
   Assignment levels;
   double step = 1, end = 0;
   int modes = 1;
   bool finer = false;
   std::set<size_t> richer{};
+  bool is_estimated = false;
   int modes_in(size_t region) const { return richer.contains(region) ? modes : 1; }
 };
 
@@ -35,7 +36,8 @@ struct Candidate : Request {
   std::map<size_t, std::string> beyond;  // linear regions that left their range, and what the run said of it
   std::map<size_t, double> doubt;        // of linear regions: what strains of the second degree may change, a share of the answer
   std::map<size_t, double> lack;         // of linear regions: share of the strain that their modes lack
-  std::map<size_t, double> energy;       // of linear regions: the largest strain energy  [J]
+  double positions_off = std::numeric_limits<double>::quiet_NaN();  // by the solver's estimate, a share of the motion
+  std::map<size_t, double> energy;                                  // of linear regions: the largest strain energy  [J]
 };
 
 class Candidates {

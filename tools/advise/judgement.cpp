@@ -89,7 +89,8 @@ bool Judgement::mend(const Candidate& c, Assignment& levels) {
     const auto says = [&](const char* text) { return c.failure.find('"' + name + text) != std::string::npos; };
     const bool whole = says("\" is flexible") || says("\" is a linear region: it has no single position"), stop = says("\" is not rigid");
     if (!whole && !stop) continue;
-    const char* why = whole ? "a joint, spring, load or mass takes it as one body" : "a contact gives its stiffness as that of a rigid part";
+    const char* why =
+        whole ? "a joint, spring, load or mass takes it as one body" : "a contact gives its stiffness as that of a rigid part";
     a.kept_rigid[r] = why;
     if (o.kept.contains(r) && o.kept.at(r) != Level::rigid)
       throw Error("--keep", fmt::format("\"{}\" cannot be {}: {}", name, word(o.kept.at(r)), why),
@@ -153,24 +154,19 @@ void Judgement::find_contacts() {
   for (const Entry& e : all.scene().entries("contact")) take(e.text("a")), take(e.text("b"));
 }
 
-/// Until when a run has to go for the values of a model: the last instant of these, and what a filter sees behind it; 0: to its end.
+/// Until when cells have to run for the values of a model: as long as its peaks may be outdone, where it still reaches half of them, and
+/// what a filter sees behind that; 0: to the end.
 double Judgement::window_of(const Candidate& c) const {
   double last = 0;
   size_t k = 0;
   for (const Entry& q : all.scene().entries("quantity")) {
     if (is_of_shapes(q.kind)) continue;
-    const double t = c.values[k++].t;
+    const double t = c.values[k++].until;
     last = std::max(last, std::isfinite(t) ? 1.1 * t + (q.kind != "injury" && q.has("cfc") ? 1.2 / q.number("cfc") : 0) : HUGE_VAL);
   }
   const Entry& time = all.scene().table("time");
   const double step = time.number("step");
   return last < 0.9 * time.number("end") ? std::max(10.0, 2 * std::ceil(last / step / 2)) * step : 0;
-}
-
-/// Where a run ends that is compared with a model's: at its window, but not after the run itself; 0: at the end.
-double Judgement::end_beside(const Candidate& c) const {
-  const double window = window_of(c);
-  return c.end > 0 && (window == 0 || c.end < window) ? c.end : window;
 }
 
 /// Makes regions nonlinear of which a run says that linear strains are in doubt, or that left their range; the doubt of the others remains.
@@ -190,6 +186,13 @@ bool Judgement::doubts(const Candidate& c, Assignment& levels) {
   }
   levels = all.consistent(levels);
   return levels != before;
+}
+
+void Judgement::judge_by(const Candidate& cells) {
+  a.reference = a.beside = &cells;
+  a.modes.clear(), a.modes_at_most = 0;
+  Assignment levels = cells.levels;
+  doubts(cells, levels);
 }
 
 /// A model and what cells change of it, by a run of each at twice the step, at half the price of cells.  The model is the base, or where a

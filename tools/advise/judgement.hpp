@@ -35,8 +35,10 @@ class Judgement {
   /// A run of cells ends where all quantities have their values.
   Request request(const Assignment& levels) const;
   const Candidate& of(const Request& request, const Candidates::Beyond& beyond = {});
-  /// Where a run ends that is compared with a model's: at its window, but not after the run itself; 0: at the end.
-  double end_beside(const Candidate& c) const;
+  /// Takes a run of all cells as the reference.
+  void judge_by(const Candidate& cells);
+  /// From now on cells run to the end.
+  void run_whole() { window_ = 0; }
 
   /// Error of a model by the reference, the step and what is in doubt of the reference, over what is allowed; 1 is all of it.
   double error(const Candidate& c) const;

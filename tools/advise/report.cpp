@@ -120,10 +120,26 @@ std::string what_is_known(const Candidates& all, const Advice& a) {
     if (const QuantityValue& v = a.reference->values[k]; std::abs(a.mesh[k]) > v.allowed)
       mesh += fmt::format("; the mesh alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.mesh[k]), v.unit, v.name,
                           v.allowed, v.unit);
+  constexpr double much = 0.05;  // as in the solver
+  const std::string positions = a.positions_off > much ? fmt::format(
+                                                             "; positions of it are off by about {:.2g} % of the motion, by the solver's "
+                                                             "estimate: a shorter time.step, where they are asked for",
+                                                             100 * a.positions_off)
+                                                       : "";
   return fmt::format(
       "judged by {}{}; what linear strains leave out of it may be {:.2g} of the tightest tolerance, by their own measures{}{}",
       label(a.reference->levels, all.names()), a.reference->step != 1 ? ", by what it changes at twice the step" : "", a.doubt,
-      a.doubt > 0.5 ? ": more than half, and nothing checked it" : "", modes + told_of_raw(a) + mesh);
+      a.doubt > 0.5 ? ": more than half, and nothing checked it" : "", modes + told_of_raw(a) + mesh + positions);
+}
+
+/// What the chosen model saves of a run of all cells.
+std::string saving(const Advice& a) {
+  const double ratio = a.all_cells / a.chosen->cost;
+  if (std::ranges::all_of(a.chosen->levels, [](Level l) { return l == Level::nonlinear; })) return "all of them cells";
+  return fmt::format("a run of all cells takes about {:.3g} s: {}", a.all_cells,
+                     about_as_long(a.all_cells, a.chosen->cost) ? "about the same"
+                     : ratio > 1                                ? fmt::format("{:.3g} times cheaper", ratio)
+                                                                : fmt::format("{:.3g} times dearer", 1 / ratio));
 }
 
 }  // namespace
@@ -132,10 +148,8 @@ std::string report_text(const Candidates& all, const Advice& a) {
   Table shown = models(all, a);
   for (auto& row : shown.rows) row.erase(row.begin() + 3);
   shown.header.erase(shown.header.begin() + 3), shown.n_text = 3;
-  return fmt::format(
-      "{}\n{}\n{}\nchosen: {}; {:.3g} s, a run of all cells takes about {:.3g} s: {:.3g} times cheaper\n{}; runs so far {:.3g} s\n",
-      budget(a).text(), regions(all, a).text(), shown.text(), label(a.chosen->levels, all.names()), a.chosen->cost, a.all_cells,
-      a.all_cells / a.chosen->cost, what_is_known(all, a), all.spent());
+  return fmt::format("{}\n{}\n{}\nchosen: {}; {:.3g} s, {}\n{}; runs so far {:.3g} s\n", budget(a).text(), regions(all, a).text(),
+                     shown.text(), label(a.chosen->levels, all.names()), a.chosen->cost, saving(a), what_is_known(all, a), all.spent());
 }
 
 std::string report_json(const Candidates& all, const Advice& a) {
@@ -145,6 +159,7 @@ std::string report_json(const Candidates& all, const Advice& a) {
   out.add("step_over_allowed", step);
   out.add("doubt_over_allowed", a.doubt);
   out.add("modes_at_most_over_allowed", a.modes_at_most);
+  out.add("positions_off", std::isfinite(a.positions_off) ? Json(a.positions_off, 6) : nullptr);
   out.add("checked", a.reference != a.base);
   out.add("all_cells_seconds", a.all_cells);
   out.add("spent_seconds", all.spent());

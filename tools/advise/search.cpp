@@ -17,9 +17,22 @@ class Search : Judgement {
   using Judgement::Judgement;
 
   Advice found() {
+    search();
+    if (!answers_to_the_end()) {
+      judge_to_the_end();
+      search();
+    }
+    hear_solver();
+    find_mesh();
+    a.all_cells = all.price(all_cells());  // they may have run by now
+    return std::move(a);
+  }
+
+ private:
+  void search() {
     find_step();
     if (!serves(*a.beside)) run_reference(), find_step();
-    a.all_cells = all.price({with(Level::nonlinear)});
+    a.all_cells = all.price(all_cells());
     tell_plan();
     if (serves(*a.base)) {
       find_what_deforms();
@@ -31,12 +44,55 @@ class Search : Judgement {
     }
     demote();
     choose();
+    take_all_cells();
     check_modes();
-    find_mesh();
-    return std::move(a);
+  }
+  Request all_cells() const { return {with(Level::nonlinear)}; }
+  /// All cells where a smaller model saves nothing, or where they tell that it is wrong.
+  void take_all_cells() {
+    constexpr double nothing = 0.2;  // seconds: what so short a run takes is tried, not predicted
+    const Request cells = all_cells();
+    const double price = all.price(cells);
+    if (o.check == Check::never || a.chosen->levels == cells.levels) return;
+    if (price > std::max(nothing, a.chosen->cost) && !about_as_long(price, a.chosen->cost)) return;
+    const Candidate& c = of(cells);
+    if (!runs(c)) return;
+    if (serves(c) && !is_cheaper(c, *a.chosen)) return;
+    a.chosen = &c;
+    if (serves(c)) return;
+    judge_by(c);  // more than was in doubt
+    find_step();
   }
 
- private:
+  /// The chosen model to the end, where its cells ended earlier: are its values still the same?
+  bool answers_to_the_end() {
+    const Candidate& c = *a.chosen;
+    if (c.end == 0) return true;
+    Request request = c;
+    request.end = 0;
+    const Candidate& whole = of(request);
+    if (!runs(whole) || difference(whole, c) > 0.1) return false;
+    if (a.reference == &c) a.reference = &whole;
+    if (a.beside == &c) a.beside = &whole;
+    a.chosen = &whole;
+    return true;
+  }
+  /// Judges anew, where a run that ended early missed what counts.
+  void judge_to_the_end() {
+    run_whole();
+    std::erase_if(a.tried, [](const Candidate* c) { return c->end > 0; });
+    rejected.clear(), a.without.clear(), a.modes.clear();
+    a.reference = a.beside = &of(request(a.reference->levels));
+    run_reference();
+  }
+  /// What the solver itself says of the positions of the chosen model, where that is cheap: of one without cells, by one run more.
+  void hear_solver() {
+    Request request = *a.chosen;
+    request.is_estimated = !std::ranges::count(request.levels, Level::nonlinear);
+    const Candidate& c = all.of(request);
+    if (c.failure.empty()) a.positions_off = c.positions_off;
+  }
+
   bool too_dear(const Request& next, double planned = 0) const {
     constexpr double never_below = 2;  // seconds: nobody waits for these
     return all.spent() + planned + all.price(next) > std::max(o.at_most * a.all_cells, never_below);
@@ -87,7 +143,7 @@ class Search : Judgement {
       a.modes_at_most = modes_at_most();
       if (a.modes_at_most < 0.1 && error(*a.chosen) + a.modes_at_most <= 1) return;
       const Candidate& c = *a.chosen;
-      Request richer{c.levels, 1, end_beside(c), 2 * c.modes};
+      Request richer{c.levels, 1, c.end, 2 * c.modes};
       for (size_t r = 0; r < n; ++r)
         if (has_modes_left_out(r)) richer.richer.insert(r);
       const Candidate& more = of(richer);  // which may be chosen
@@ -132,10 +188,11 @@ class Search : Judgement {
       a.chosen = a.reference;
     choose();
   }
-  /// Error of the mesh by the chosen model on a finer one; it falls with the square of the size of cells.
+  /// Error of the mesh by the chosen model on a finer one, to the end: there a peak may come later.  It falls with the square of the size
+  /// of cells.
   void find_mesh() {
     if (all.refinement() == 0) return;
-    const Candidate& fine = all.of({a.chosen->levels, 1, end_beside(*a.chosen), a.chosen->modes, true, a.chosen->richer});
+    const Candidate& fine = all.of({a.chosen->levels, 1, 0, a.chosen->modes, true, a.chosen->richer});
     if (!fine.failure.empty()) return warn("", "the finer mesh does not run, so the error of the mesh is unknown: " + fine.failure);
     const double square = all.refinement() * all.refinement();
     a.mesh = part(*a.chosen, fine, square / (square - 1));
@@ -258,11 +315,17 @@ class Search : Judgement {
     return false;
   }
 
-  /// The cheapest that serves; where the seconds of two are about the same, the one with fewer unknowns.
+  static bool runs(const Candidate& c) {
+    return c.failure.empty() && c.ended == 0 && std::ranges::all_of(c.values, [](const QuantityValue& v) { return v.why.empty(); });
+  }
+  /// Where two take about as long, the one with fewer unknowns counts as cheaper.
+  static bool is_cheaper(const Candidate& c, const Candidate& than) {
+    return about_as_long(c.cost, than.cost) ? c.unknowns < than.unknowns : c.cost < than.cost;
+  }
+  /// The cheapest that serves.
   void choose() {
     for (const Candidate* c : a.tried)
-      if (serves(*c) && (c->cost < 0.85 * a.chosen->cost || (c->cost < 1.15 * a.chosen->cost && c->unknowns < a.chosen->unknowns)))
-        a.chosen = c;
+      if (serves(*c) && is_cheaper(*c, *a.chosen)) a.chosen = c;
   }
 
   std::set<size_t> deform_;  // regions that may not be rigid
@@ -271,6 +334,11 @@ class Search : Judgement {
 }  // namespace
 
 Advice advise(Candidates& all, const SearchOptions& options) { return Search(all, options).found(); }
+
+bool about_as_long(double a, double b) {
+  constexpr double noise = 0.02;  // seconds
+  return std::abs(a - b) < noise || (a < 1.15 * b && b < 1.15 * a);
+}
 
 double difference(const Candidate& c, const Candidate& reference, std::string* worst) {
   if (!c.failure.empty()) return HUGE_VAL;

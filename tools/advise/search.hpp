@@ -31,9 +31,10 @@ struct Advice {
   double tightest = 0;                         // that tolerance, relative
   std::map<size_t, const Candidate*> without;  // the chosen model with this region rigid
   std::vector<const Candidate*> tried;
-  std::deque<Candidate> made;                // references that are no runs
-  std::map<size_t, std::string> kept_rigid;  // regions that cannot deform, and why
-  double all_cells = 0;                      // what a run of all cells costs  [s]
+  std::deque<Candidate> made;                                       // references that are no runs
+  std::map<size_t, std::string> kept_rigid;                         // regions that cannot deform, and why
+  double all_cells = 0;                                             // what a run of all cells costs  [s]
+  double positions_off = std::numeric_limits<double>::quiet_NaN();  // of the chosen model, by the solver's estimate: a share of the motion
 
   /// Error of a model that is `off` the reference in quantity k, the step's included, in its unit.  Where half the step told what a step of
   /// none makes of the reference, the model is judged against that, and told a quarter of the step's part in case the estimate is off.
@@ -42,6 +43,9 @@ struct Advice {
 
 /// Errors: no model runs; no output of fields where stress is asked for; a step that no model can be judged with.
 Advice advise(Candidates& all, const SearchOptions& options);
+
+/// Do seconds differ by no more than those of a run that is done twice?
+bool about_as_long(double a, double b);
 
 /// Largest |difference| of the quantities over what is allowed of the reference, infinite where the candidate lacks one or did not run.
 double difference(const Candidate& c, const Candidate& reference, std::string* worst = nullptr);

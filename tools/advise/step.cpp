@@ -22,7 +22,7 @@ size_t Judgement::largest_step() const {
 
 /// Error of the step of a model by (h, h/2) and its order of two.
 std::string Judgement::take_step(const Candidate& c) {
-  const Candidate& half = all.of({c.levels, 0.5, end_beside(c)});
+  const Candidate& half = all.of({c.levels, 0.5, c.end});
   if (half.failure.empty()) a.step = part(c, half, 4. / 3);
   return half.failure;
 }
@@ -60,8 +60,7 @@ bool Judgement::is_known_by_twice(double off) {
     a.step.assign(a.reference->values.size(), 0);
   }
   if (!may_be_twice()) return false;
-  const Request whole{a.reference->levels, 2, a.reference->end};
-  const Candidate& twice = all.of(all.knows(whole) ? whole : Request{whole.levels, 2, end_beside(*a.reference)});
+  const Candidate& twice = all.of({a.reference->levels, 2, a.reference->end});
   if (!twice.failure.empty()) return false;
   const std::vector<double> change = part(twice, *a.reference, 1. / 3);
   for (size_t k = 0; k < change.size(); ++k)
@@ -77,6 +76,7 @@ void Judgement::find_step() {
     a.is_by_half = true;
     return step_over(largest_step()) <= most_step;
   };
+  a.is_by_half = false;
   const double off = difference(*a.base, *a.reference);
   if (off < 1 ? by_half(*a.base) : is_known_by_twice(off)) return;
   if (!by_half(*a.beside)) refuse_step();

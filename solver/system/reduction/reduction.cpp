@@ -432,15 +432,16 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
     parts.push_back(modal_derivatives(cells, bending.shapes.leftCols(n), bending.omega2.head(n), in.length,
                                       [&](const Matrix& F) { return flexibility.solve(F); }));
     basis.find(parts, out);
-    for (Matrix& vibrations = parts[2]; in.may_be_fewer && out.omega2.size() > most_stiffened && vibrations.cols() > n_held;) {
-      const Index keep = std::max(n_held, vibrations.cols() - (out.omega2.size() - most_stiffened));
+    for (Matrix& vibrations = parts[2]; in.may_be_fewer && out.omega2.size() > most_stiffened && vibrations.cols() > 0;) {
+      const Index keep = std::max<Index>(0, vibrations.cols() - (out.omega2.size() - most_stiffened));
       out.held_frequency = out.held(keep, 0), out.held.conservativeResize(keep, Eigen::NoChange);
       vibrations.conservativeResize(Eigen::NoChange, keep);
       basis.find(parts, out);
     }
     if (out.omega2.size() > most_stiffened)
-      throw Error("", fmt::format("{} modes, the most that can stiffen is {}", out.omega2.size(), most_stiffened),
-                  "fewer vibration modes: [region.NAME] modes or up_to");
+      throw Error(
+          "", fmt::format("{} modes, the most that can stiffen is {}", out.omega2.size(), most_stiffened),
+          parts[2].cols() > 0 ? "fewer vibration modes: [region.NAME] modes" : "tag it nonlinear: its interfaces and loads make as many");
     out.strain = quadratic_strain(cells, out.shapes, out.omega2, in.length, tell);
   }
   out.sites = at_sites(in.X, out.shapes);
