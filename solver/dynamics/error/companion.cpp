@@ -55,13 +55,15 @@ void Companion::follow(const State& s, double added, ErrorEstimate& estimate) {
 }
 
 void Companion::catch_up(const State& s, double added, ErrorEstimate& estimate) {
-  if (waiting_ == 0 || !estimate.why().empty()) return;
+  if (waiting_ == 0 || estimate.is_given_up()) return;
   waiting_ = 0;
   const Aside aside(system_);
   swap_memory();
   const bool there = step(s.t, 0, estimate);
   swap_memory();
-  if (!there) return estimate.lose(fmt::format("a step twice as long fails at t = {:.4g} s", state_.t));
+  if (!there)
+    return estimate.lose(fmt::format("a step twice as long {} at t = {:.4g} s",
+                                     turns_far_ ? fmt::format("turns a part by more than {:g} rad", turn_limit) : "fails", state_.t));
   estimate.look(s.t, apart(system_, s.q, state_.q), apart(system_, s.q, start_), integrator_->order(), added);
 }
 
@@ -77,20 +79,24 @@ void Companion::restart(const State& of_run, bool strikes, double jerk_step) {
 
 bool Companion::step(double to, int cuts, ErrorEstimate& estimate) {
   if (try_step(to)) return true;
-  system_.settle(false), estimate.split();
+  system_.settle(false);
+  if (turns_far_) return false;  // halved steps would be those of the run, and their distance nothing
+  estimate.split();
   const double middle = (state_.t + to) / 2;
   return cuts < most_cuts && step(middle, cuts + 1, estimate) && step(to, cuts + 1, estimate);
 }
 
 bool Companion::try_step(double to) {
   StepTools tools{system_, *solver_, newton_, make_solver_};
+  turns_far_ = false;
   for (const Predictor p : {Predictor::rigid_rotation, Predictor::velocity, Predictor::hold}) {
     tools.newton.reach = p == Predictor::rigid_rotation ? 1 : newton_.reach;
     tools.newton.least_share = p == Predictor::hold ? newton_.least_share : 0.1;
     if (!integrator_->solve(tools, state_, to - state_.t, p).converged) continue;
     integrator_->end(reached_);
     system_.advance(integrator_->taken().back().stage);
-    if (!system_.fault(reached_.q).empty() || system_.largest_turn(state_.q, reached_.q).angle > turn_limit) continue;
+    turns_far_ = system_.largest_turn(state_.q, reached_.q).angle > turn_limit;
+    if (turns_far_ || !system_.fault(reached_.q).empty()) continue;
     integrator_->accept(state_);
     state_.t = to;
     system_.commit(state_.q, &state_.v);

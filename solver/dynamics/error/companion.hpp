@@ -47,7 +47,8 @@ class Companion {
   State state_, reached_;
   Config start_;  // of the run
   int waiting_ = 0;
-  Kept memory_;  // what the contributions remember, of the other solution
+  bool turns_far_ = false;  // the step tried last turned a part further than a step may
+  Kept memory_;             // what the contributions remember, of the other solution
   Impulses untold_;
 };
 

@@ -27,7 +27,7 @@ double apart(const System& system, const Config& a, const Config& b) {
 }
 
 void ErrorEstimate::look(double t, double apart, double moved, int order, double added) {
-  t_ = t, apart_ = apart, order_ = std::min(order_, order);
+  t_ = t, apart_ = apart, order_ = std::min(order_, order), ++looks_;
   motion_ = std::max(motion_, moved);
   if (apart > most_) most_ = apart, most_t_ = t;
   if (!samples_.empty() && t < samples_.back().t + spacing_) return;
@@ -87,7 +87,7 @@ double ErrorEstimate::meaningless_from() const {
 }
 
 void ErrorEstimate::archive(Archive& a) {
-  a("error estimate", order_, splits_, t_, apart_, most_, most_t_, motion_, spacing_, samples_, why_, is_lost_, is_sum_);
+  a("error estimate", order_, splits_, looks_, t_, apart_, most_, most_t_, motion_, spacing_, samples_, why_, is_lost_, is_sum_);
 }
 
 }  // namespace hilo

@@ -32,9 +32,11 @@ class ErrorEstimate {
   void give_up(const std::string& why) { why_ = why; }
   /// The same, since the coarser one cannot go on: so coarse are the steps.
   void lose(const std::string& why) { why_ = why, is_lost_ = true; }
-  bool is_lost() const { return is_lost_; }
-  const std::string& why() const { return why_; }
-  bool is_there() const { return why_.empty() && t_ > 0; }
+  bool is_given_up() const { return !why_.empty(); }
+  bool is_lost() const { return is_lost_ || (!is_given_up() && is_halved()); }
+  /// Why there is none, or "".
+  std::string why() const { return why_.empty() && is_halved() ? "steps twice as long fail" : why_; }
+  bool is_there() const { return why().empty() && t_ > 0; }
 
   double end() const { return error(apart_, t_); }  // at the time looked at last [m]
   double largest() const { return error(most_, most_t_); }
@@ -56,11 +58,13 @@ class ErrorEstimate {
   struct Sample {
     double t, most, added;  // largest distance until then
   };
+  /// More than a tenth of its steps were those of the finer one.
+  bool is_halved() const { return 10 * splits_ > looks_; }
   double error(double apart, double t) const;
   double growth() const;   // e-foldings a second, or 0
   double trusted() const;  // until then distances are small beside the motion [s]
   double grown(double t) const;
-  int order_ = 99, splits_ = 0;
+  int order_ = 99, splits_ = 0, looks_ = 0;
   double t_ = 0, apart_ = 0, most_ = 0, most_t_ = 0, motion_ = 0, rest_ = 0, spacing_ = 0;
   std::vector<Sample> samples_;
   std::string why_ = "";
