@@ -58,19 +58,6 @@ void Bodies::evaluate(Pass& p) const {
   }
 }
 
-/// A body whose nodes lie on a line: a tangent for the turn about it, without a force.  Such a turn moves nothing, so that the answer is
-/// the same; where something else resists it, this share of a stiffness changes no more than Newton's last correction.
-void Bodies::stiffen_line(Pass& p, size_t b) const {
-  const Body& body = points_.bodies[b];
-  if (points_.body_block[b] < 0) return;
-  constexpr double share = 1e-6, of_mass = 1e-9;
-  const double slope = share * points_.stiffness * p.s.slope + of_mass * points_.mass * p.s.mass_slope;
-  const Vec3 line = p.s.end->R[b] * body.line;
-  RowMatrix6 K = RowMatrix6::Zero();
-  K.bottomRightCorner<3, 3>() = slope * body.size * body.size * line * line.transpose();
-  p.K->add(points_.body_clique[b], K.data());
-}
-
 namespace {
 
 using Rows = Eigen::Matrix<double, 4, 3>;

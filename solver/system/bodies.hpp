@@ -11,6 +11,9 @@ class Bodies final : public Contribution, public Equations, public Turning, publ
   /// Mass-proportional damping of a body: int alpha rho b b^T, b = (1, X - Xc); none of those beyond the list [kg/s, kg m/s, kg m^2/s].
   std::vector<Eigen::Matrix4d> drag;
 
+  /// How much of a tangent holds the turns that cells do not resist; once, after everything is numbered.  Collective.
+  void look_at_lines(const System& system);
+
   Traits traits() const override;
   std::string count() const override;
   std::string owner(int block) const override;
@@ -29,7 +32,11 @@ class Bodies final : public Contribution, public Equations, public Turning, publ
   bool brakes(size_t b) const { return b < drag.size() && !drag[b].isZero(0) && !points_.bodies[b].linear; }
   void add_drag(Pass& p, size_t b) const;
   void stiffen_line(Pass& p, size_t b) const;
+  struct Line {
+    double stiffness, inertia;  // [N m], [kg m^2]
+  };
   const Points& points_;
+  std::vector<Line> lines_;                // of each body; none where no body has a line
   std::vector<std::array<Vec3, 4>> arms_;  // to the four points of each body, when first asked for
 };
 

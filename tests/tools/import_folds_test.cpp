@@ -163,6 +163,48 @@ TEST_F(ImportFolds, AStiffenerBelowThePlateBendsWithIt) {
   EXPECT_NEAR(way.z() / (M * L * L / (2 * whole)), -1, 0.02);
 }
 
+// A rib along the middle resists the turn about the normal, which the shells do not: sideways the panel is a beam, however fine.
+TEST_F(ImportFolds, ARibBracesNoPlateSideways) {
+  constexpr double b = 0.05, h = 0.2, L = 10, A = t + b * h, I = t / 12 + h * b * b * b / 12;
+  Frame f;
+  f.across = 2, f.step = L / 48;
+  f.strip(0, 0, L, 0);
+  std::string beams = "*ELEMENT, TYPE=B31, ELSET=RIB\n", all = "*NSET, NSET=ALL, GENERATE\n1,147,1\n";
+  const auto middle = [&](int i) { return f.station(f.step * i, 0) + 1; };
+  for (int i = 0; i < 48; ++i) beams += fmt::format("{},{},{}\n", 1000 + i, middle(i), middle(i + 1));
+  const std::string rib = fmt::format("*BEAM SECTION, ELSET=RIB, MATERIAL=M, SECTION=RECT\n{},{}\n0,0,1\n", h, b),
+                    sets = "*NSET, NSET=ROOT\n" + f.nodes_at(0, 0) + all + beams, flat = "ROOT,1,6\nALL,3,3\n";
+  const auto solved = [&](const std::string& loads, const std::string& procedure) {
+    place.write("deck.inp", f.deck(sets, flat, loads, rib, procedure));
+    imported("deck.inp", "--thicken --units mm-t-s --scene-out scene.toml");
+    return succeeded(place.run("hilo-solve scene.toml -o run.h5"));
+  };
+  const auto first = [&](const char* list) {
+    const auto all_of = Store::open(place / "run.h5").read<double>(list);
+    const auto wide = Store::open(place / "run.h5").shape(list)[1];
+    return all_of[static_cast<size_t>(wide)];
+  };
+  const std::string loads = f.load(L, 0, 1, -1);
+  const double euler = M_PI * M_PI * E * I / (4 * L * L), shear = 1 + euler * 1.2 / (E / 2 * A);
+  solved(loads, "*BUCKLE\n1\n");
+  EXPECT_NEAR(first("/history/buckling") / (euler / shear), 1, 0.01);
+  const std::string modal = f.deck(sets, flat, "", rib, "*FREQUENCY\n1\n");
+  place.write("deck.inp", modal.substr(0, modal.find("*CLOAD")) + "*END STEP\n");
+  imported("deck.inp", "--thicken --units mm-t-s --scene-out scene.toml");
+  succeeded(place.run("hilo-solve scene.toml -o run.h5"));
+  EXPECT_NEAR(first("/history/mode") / (0.55959 * std::sqrt(E * I / (1000 * A)) / (L * L)), 1, 0.015);
+  solved(f.load(L, 0, 1, -1.3 * euler), "*STATIC\n");
+  std::string scene = test::text_of(place / "scene.toml");
+  const std::string analysis = "analysis = \"static\"";
+  ASSERT_NE(scene.find(analysis), std::string::npos) << scene;
+  place.write("path.toml", scene.replace(scene.find(analysis), analysis.size(), "analysis = \"path\"\nsteps = 6"));
+  const auto ran = place.run("hilo-solve path.toml out.h5 -o run.h5");
+  const std::string lost = "stability is lost at ";
+  const size_t at = (ran.out + ran.err).find(lost);
+  ASSERT_NE(at, std::string::npos) << ran.out << ran.err;
+  EXPECT_NEAR(1.3 * std::stod((ran.out + ran.err).substr(at + lost.size())) * shear, 1, 0.01);
+}
+
 TEST_F(ImportFolds, AnEdgeOnASolidIsAHinge) {
   const Vec3 way = tip(strip_between_blocks());
   expect_said("4 nodes of shells are nodes of solids too, which do not turn: hinges");

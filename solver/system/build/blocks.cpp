@@ -159,8 +159,8 @@ void Builder::make_blocks() {
     if (body < 0) {
       body = new_body(mesh.block_name[b], mesh.block_at[b]);
       out_->bodies[body].patch = out_->bodies[body].block = true;
-      out_->bodies[body].size = std::max(size, 1e-9 * out_->length);
     }
+    if (out_->bodies[body].mass == 0 && out_->bodies[body].free()) out_->bodies[body].size = std::max(size, 1e-9 * out_->length);
     if (is_alone && eigen.eigenvalues()[1] < on_line * on_line * eigen.eigenvalues()[2])
       out_->bodies[body].line = eigen.eigenvectors().col(2);
     body_of[b] = body;

@@ -142,6 +142,7 @@ std::unique_ptr<System> Builder::build() {
   reduce_linear_regions();
   out_->stiffness = comm_.max(out_->stiffness);  // cells are on their ranks
   out_->prepare();
+  out_->part<Bodies>().look_at_lines(*out_);
   if (comm_.sum(static_cast<double>(out_->n_blocks())) == 0) warn(scene_.path, "nothing is free to move: every region and body is held");
   set_initial_velocities();
   return std::move(out_);
