@@ -21,7 +21,7 @@ namespace hilo {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::int64_t version = 3;  // of the format
+constexpr std::int64_t version = 4;  // of the format
 
 std::string newest(const std::string& results) { return stem(results) + ".checkpoint.h5"; }
 std::string former(const std::string& results) { return stem(results) + ".checkpoint-1.h5"; }

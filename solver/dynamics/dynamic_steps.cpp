@@ -41,6 +41,9 @@ class DynamicSteps final : public Steps {
     a("dynamic steps", at_, events);
     if (control_) control_->archive(a);
     if (companion_) companion_->archive(a);
+    bool by_steps = step_errors_.has_value();  // start() may have found that they tell nothing
+    a("error by steps", by_steps);
+    if (!by_steps) step_errors_.reset();
     if (step_errors_) step_errors_->archive(a);
     const auto same = [](const Event& x, const Event& y) { return x.t == y.t && x.jump == y.jump; };
     if (a.restores() && !std::ranges::equal(events, run_.events, same)) find_place();

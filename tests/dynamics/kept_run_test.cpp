@@ -132,6 +132,16 @@ TEST(KeptRun, GoesOnBetweenStepsThatWereCut) {
       2);
 }
 
+// Clocks of mechanisms, which the start of a run finds, leave no estimate by steps alone.
+TEST(KeptRun, GoesOnWithAnErrorThatStepsTell) {
+  const Folder folder;
+  const std::vector<std::string> by_steps{"time.error_estimate=\"steps\""};
+  const std::string swing = "gravity = [0, 0, -9.81]\n" + body("rod", 1, {5, 0, 0}, {1e-3, 1e-3, 1e-3}) +
+                            joint("revolute", "hinge", "ground", "rod", {5, 0, 0.3}, "axis = [0, 1, 0]\n") + in_time(0.02, 1e-3);
+  for (const std::string& scene : {swing, swing + "integrator = \"generalized-alpha\"\n", machine()})
+    expect_goes_on(folder.path(), scene, "", {1, 7}, by_steps);
+}
+
 TEST(KeptRun, GoesOnWithEachOfTheSerialSolvers) {
   const Folder folder;
   for (const char* kind : {"klu", "cholesky", "umfpack"})
