@@ -208,13 +208,11 @@ void Flexibility::find_room() {
 }
 
 Flexibility::Matrix Flexibility::solve(Matrix F) const {
-  if (free_) {
-    const Vector whole = F.colwise().norm();
-    F -= M_rigid_ * (rigid_.transpose() * F);
-    for (Eigen::Index k = 0; k < F.cols(); ++k)  // it moves the region as a rigid body: what is left is rounding
-      if (F.col(k).norm() < 1e-10 * whole[k]) F.col(k).setZero();
-  }
+  const Vector whole = F.colwise().norm();
+  if (free_) F -= M_rigid_ * (rigid_.transpose() * F);
   Matrix z = on_unknowns(F);
+  for (Index k = 0; k < F.cols(); ++k)  // it moves the region as a rigid body, or acts on what is held: what is left is rounding
+    if (free_ ? F.col(k).norm() < 1e-10 * whole[k] : z.col(k).norm() < 1e-10 * whole[k]) z.col(k).setZero();
   const auto tell = time_left(in_.progress, "answers to loads");
   const Index width = factor_.columns_at_once();
   for (Index k = 0; n_blocks_ > 0 && k < z.cols(); k += width) {

@@ -246,6 +246,7 @@ struct ModeBasis {
 
   /// Modes have no sign, and those of one frequency no axes of their own: rounding would choose, on other ranks otherwise.  Waves through
   /// the region, which no symmetry makes zero, choose instead: of modes of one frequency the first alone meets the first wave, and so on.
+  /// Waves differ in direction and in how they move: by phase alone they would be alike for all even modes, and for all odd ones.
   void settle(Reduction& out) const {
     constexpr double same = 1e-6;  // of squared frequencies
     const Index m = out.omega2.size();
@@ -253,11 +254,14 @@ struct ModeBasis {
       for (next = first + 1; next < m && out.omega2[next] - out.omega2[next - 1] < same * out.omega2[next];) ++next;
       const Index n = next - first;
       Matrix met = Matrix::Zero(n, n);  // modes x waves
-      for (Index w = 0; w < n; ++w)
-        for (size_t i = 0; i < in.X.size(); ++i) {
-          const double at = Vec3(1.3, 2.1, 3.7).dot(in.X[i] - in.centre) / in.length + 0.6 + 1.1 * static_cast<double>(w);
-          met.col(w) += std::sin(at) * out.shapes.block(3 * static_cast<Index>(i), first, 3, n).transpose() * Vec3(1, 0.7, 0.4);
-        }
+      for (Index w = 0; w < n; ++w) {
+        const auto k = static_cast<double>(w);
+        const Vec3 along(1.3 + std::sin(1.9 * k), 2.1 + std::sin(0.8 * k), 3.7),
+            moves(std::sin(1.6 + 2.4 * k), std::sin(0.8 + 1.3 * k), std::sin(0.4 + 0.7 * k));
+        for (size_t i = 0; i < in.X.size(); ++i)
+          met.col(w) += std::sin(along.dot(in.X[i] - in.centre) / in.length + 0.6) *
+                        out.shapes.block(3 * static_cast<Index>(i), first, 3, n).transpose() * moves;
+      }
       const Eigen::HouseholderQR<Matrix> qr(met);
       const Vector sign = qr.matrixQR().diagonal().unaryExpr([](double x) { return x < 0 ? -1.0 : 1.0; });
       out.shapes.middleCols(first, n) *= Matrix(qr.householderQ()) * sign.asDiagonal();

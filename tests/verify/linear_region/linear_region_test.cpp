@@ -118,6 +118,28 @@ TEST(LinearRegion, GoesOnOnOtherRanks) {
   }
 }
 
+// A bar of two cells each way between two faces: the middle does not give way to forces that grow along it, and of its bending modes,
+// pairs of one frequency, both are even.
+TEST(LinearRegion, HasTheSameModesOnOtherRanksWhateverItsSymmetry) {
+  for (const Vec3& size : {Vec3(0.4, 0.03, 0.02), Vec3(0.4, 0.03, 0.03), Vec3(0.4, 0.4, 0.4)}) {
+    SceneCase c(soft + held("xmin") + held("xmax") + in_time(0.002, 2e-4));
+    c.use(block_mesh({.n = {2, 2, 2}, .low = Vec3(0.5, 0, 0), .high = Vec3(0.5, 0, 0) + size}), {Fidelity::linear});
+    succeeded(c.run("hilo-reduce --quiet scene.toml tags.h5 -o one.h5"));
+    for (const int ranks : {2, 3}) {
+      succeeded(mpirun(ranks, "hilo-reduce --quiet scene.toml tags.h5 -o more.h5", c.path()));
+      for (const char* what : {"omega2", "sites"}) {
+        const std::string of = fmt::format("/reduced/block/{}", what);
+        const auto one = Store::open(c / "one.h5").read<double>(of), more = Store::open(c / "more.h5").read<double>(of);
+        ASSERT_EQ(one.size(), more.size());
+        const auto view = [](const auto& list) { return Eigen::Map<const Eigen::VectorXd>(list.data(), std::ssize(list)); };
+        EXPECT_LT((view(one) - view(more)).cwiseAbs().maxCoeff(), 1e-7 * view(one).cwiseAbs().maxCoeff())
+            << what << " " << ranks << " " << size;
+      }
+      std::filesystem::remove(c / "more.h5");
+    }
+  }
+}
+
 // Modes do not stiffen: a free bar turns at 18.3 rad/s, its first frequency is 64.6 sqrt(E/1e7) rad/s.
 TEST(LinearRegion, ThatSpinsNearItsFirstFrequencyIsWarnedOfAndBeyondItRefused) {
   SceneCase c(in_flight);
