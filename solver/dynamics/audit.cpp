@@ -11,6 +11,7 @@ namespace {
 
 constexpr double rounding = 1e-12;  // of sums over the scene
 constexpr double digit = 1e-15;     // of a force times the scene's length, in work
+constexpr double slip = 0.01;       // of the largest speed: what a method may leave along a row that others imply
 
 double total(const Energy& e) { return e.kinetic + e.elastic + e.gravity; }
 
@@ -78,6 +79,7 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
     opens_dropped_row_ = true;
     return fmt::format("{} opens by {:.2g} along a row that seemed redundant", system_.row_owner(g.dropped_block), g.dropped);
   }
+  if (const std::string slips = slipping(end); !slips.empty()) return slips;
   moving_next_ = std::max(moving_, next_.energy.kinetic);
   step_ = sum_ = left_ = 0;
   if (!energy_unchecked_.empty()) return "";
@@ -109,6 +111,32 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   if (!(left_ <= left_bound_ * std::max(1.0, n_steps_ / 1000)))
     return fmt::format("Newton left {:.2g} J of {:.2g} J: solver.tolerance is too loose", std::abs(next_.left), came);
   return "";
+}
+
+/// Which row of velocities, dropped as redundant, slips by more than methods leave of others.
+std::string Audit::slipping(const State& end) {
+  const auto is_dropped = [](const Constraint& c, int r) { return !c.active()[r] && !c.is_driven(r); };
+  const auto each = [&](auto&& visit) {
+    for (const auto& c : system_.constraints())
+      for (int r = c->n_position_rows(); r < c->n_rows(); ++r) visit(*c, r);
+  };
+  bool any = false;
+  each([&](const Constraint& c, int r) { any = any || is_dropped(c, r); });
+  if (!any || system_.same_time == 0) return "";
+  std::vector<double> rate;
+  system_.row_rates(end.q, end.v, nullptr, end.t, rate, nullptr);
+  double kept = 0, most = 0;
+  const Constraint* worst = nullptr;
+  each([&](const Constraint& c, int r) {
+    const double x = std::abs(rate[static_cast<size_t>(c.row() + r)]);
+    if (!is_dropped(c, r))
+      kept = std::max(kept, x);
+    else if (!(x <= most))
+      most = x, worst = &c;
+  });
+  if (!worst || most <= slip * system_.largest_rate(end.v) + 10 * kept + row_bound_ * system_.length / (end.t - t_)) return "";
+  opens_dropped_row_ = true;
+  return fmt::format("{} slips at {:.2g} m/s along a row that seemed redundant", worst->label(), most);
 }
 
 /// Work of the multipliers as their rows open or close over the step, which the balance sees as lost [J].  Rows are the same on all ranks.

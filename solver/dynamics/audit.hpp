@@ -6,6 +6,7 @@
 //               N, what Newton left: the work of its residual, and of multipliers as rows open: the tolerance, and told
 //               |N|                                          <= max(1e-4, bound) x all energies that came or went
 //   joint rows  |g|, of the rows kept and of those dropped   <= bound x length of the scene
+//   slip        of rows of velocities that were dropped      <= 1 % of the largest speed + 10 times that of the rows kept
 //   turn        of every body and cell over the step         <= 2 rad: at half a turn (R0 + R1)/2 loses rank, and with it equations vanish
 //   everything finite; det F of every cell above zero (Newton's report; between its points System::fault)
 //
@@ -62,6 +63,7 @@ class Audit {
   }
 
  private:
+  std::string slipping(const State& end);
   double opened(const std::vector<double>& gaps, std::span<const Taken> taken);
   /// Of all steps, where each rounds by `one`, either way.
   double rounded(double one) const { return one * std::sqrt(n_steps_ + 1); }

@@ -23,6 +23,10 @@ struct UnitRows {
 
 bool is_drive(const System& system, std::pair<int, int> row) { return system.constraints()[row.first]->is_driven(row.second); }
 
+bool is_of_positions(const System& system, std::pair<int, int> row) {
+  return row.second < system.constraints()[row.first]->n_position_rows() && !is_drive(system, row);
+}
+
 enum class Rows { all, active, plain };  // plain: all but those of drives
 
 UnitRows unit_rows(const System& system, const Config& q, Rows which, bool norms_alone = false) {
@@ -72,8 +76,10 @@ Redundancy choose_rows(System& system, const Config& q, double dependent) {
   const std::vector<int> looped = columns_in_loops(all.A, owner);
   report.rank = report.rows - static_cast<int>(looped.size());
   for (auto& group : connected_columns(all.A, looped)) {
-    std::stable_partition(group.begin(), group.end(), [&](int k) { return !is_drive(system, all.rows[k]); });
-    const Eigen::Index n_plain = std::count_if(group.begin(), group.end(), [&](int k) { return !is_drive(system, all.rows[k]); });
+    // A row of positions that depends on rows of velocities would follow them no better than the method follows velocities.
+    const auto drives = std::stable_partition(group.begin(), group.end(), [&](int k) { return !is_drive(system, all.rows[k]); });
+    const auto rates = std::stable_partition(group.begin(), drives, [&](int k) { return is_of_positions(system, all.rows[k]); });
+    const Eigen::Index n_plain = rates - group.begin();
     const Eigen::SparseMatrix<double> own = part_of(all.A, group, number);
     const Independence found = independent_columns(own, n_plain, dependent);
     report.rank += static_cast<int>(found.rank);

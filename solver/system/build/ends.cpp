@@ -101,6 +101,9 @@ Builder::Found Builder::find(const std::string& name, const std::string& where, 
   const auto block = !mesh_ || is_in(mesh_->mesh) ? -1 : std::ranges::find(mesh_->mesh.block_name, name) - mesh_->mesh.block_name.begin();
   const bool is_block = block >= 0 && block < std::ssize(mesh_->mesh.block_name);
   if (!mesh_ || !(is_block || is_in(mesh_->mesh))) {
+    if (std::ranges::any_of(scene_.entries("beam"), [&](const Entry& e) { return e.name == name; }))
+      throw Error(where, fmt::format("\"{}\" is a beam, which goes by its sections here", name),
+                  fmt::format("\"{0}.0\" to \"{0}.end\", each a body", name));
     const std::string near = suggest(name, all_names());
     throw Error(where, fmt::format("no region, set or body \"{}\"", name),
                 mesh_ || !near.empty() ? near : "no mesh is given: hilo-solve scene.toml tags.h5");
