@@ -13,14 +13,14 @@
 namespace hilo {
 namespace {
 
-constexpr double aim = 0.5, most = 1.4;  // of what is asked: error that a pass aims at, and that is good enough
-constexpr double most_high = 0.8;        // the same of a high order, whose estimate is less exact
-constexpr double most_before = 3;        // the same before the end
-constexpr double sure = 12,              // times what is asked: distance of two solutions of one pass that needs no other,
-    sure_of_springs = 1.5;               // and where something may vibrate
-constexpr double other = 0.4;            // of a demand: another run than that, which may confirm it
-constexpr double far_off = 50;           // of what is asked: a run with such an error confirms nothing
-constexpr double much_better = 0.1;      // an error at the end that needs a reason
+constexpr double aim = 0.5, most = 1;  // of what is asked: error that a pass aims at, and that is good enough
+constexpr double most_high = 0.8;      // the same of a high order, whose estimate is less exact
+constexpr double most_before = 3;      // the same before the end
+constexpr double sure = 12,            // times what is asked: distance of two solutions of one pass that needs no other,
+    sure_of_springs = 1.5;             // and where something may vibrate
+constexpr double other = 0.4;          // of a demand: another run than that, which may confirm it
+constexpr double far_off = 50;         // of what is asked: a run with such an error confirms nothing
+constexpr double much_better = 0.1;    // an error at the end that needs a reason
 constexpr size_t most_passes = 12;
 constexpr double steep = 64,
                  steepest = 1000;     // by which a demand falls at most, where an error is no small part of the motion, and where it is
@@ -30,6 +30,7 @@ constexpr double dear = 10;           // a step of it costs as much as this many
 constexpr double most_steps = 100;    // of a pass, over those of the first by the same method
 constexpr double starting_steps = 6;  // until steps have grown to the longest
 constexpr long fewest_steps = 8;      // of a run, which begins with sixteenths of it
+constexpr double shortest = 0.3;      // of a demand: one more pass would not be much better
 constexpr double least_step = 1e-14;  // of the length: smaller local errors of second order are round-off
 constexpr double least_share = 1e-7;  // of the length: demands of methods above second order below it ask for round-off
 
@@ -127,13 +128,18 @@ bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, cons
     seen = std::clamp(std::log(before->error / now.error) / std::log(before->demand / now.demand), power / 2, power);
   double less = std::pow(aim * plan.asked / std::max(now.error, estimate.largest() / most_before), 1 / seen);
   less = std::max(less, 1 / (estimate.share(now.error) > 0.05 ? steep : steepest));
-  const double demand = less * now.demand, steps = static_cast<double>(now.steps) * std::pow(less, order == 2 ? -1. / 2 : -1. / 3);
   const std::string lack = fmt::format("{:.3g} m at the end where {:.3g} m are asked", now.error, plan.asked);
+  // Where the error falls slower than those of single steps, as with kinks of forces, these become round-off first.
+  const double least = std::pow(least_step * system.length * static_cast<double>(now.steps) / (now.demand * end), 2. / 3);
+  if (order == 2 && less < least) {
+    if (least > shortest) return says(lack + ": errors of single steps are round-off already");
+    less = least;
+  }
+  const double demand = less * now.demand, steps = static_cast<double>(now.steps) * std::pow(less, order == 2 ? -1. / 2 : -1. / 3);
   const bool knows_gauss = std::ranges::any_of(plan.passes, [](const StepPlan::Pass& p) { return p.method == Gauss::name; });
   if (order == 2 && plan.chooses_method && !knows_gauss && steps > many_steps)
     return again(std::string(Gauss::name), first_demand(plan.asked, 6, system.length, end));
-  if (order > 2 ? demand < least_share * system.length : demand * end / steps < least_step * system.length)
-    return fall_back(lack + ": steps as short as that are lost in round-off");
+  if (order > 2 && demand < least_share * system.length) return fall_back(lack + ": steps as short as that are lost in round-off");
   if (steps > most_steps * static_cast<double>(first->steps))
     return says(fmt::format("{}: that would need about {:.2g} steps instead of {}", lack, steps, now.steps));
   return again(now.method, demand);

@@ -138,6 +138,23 @@ tolerance = 1e-6
   EXPECT_LT(number_of(w, "run.json", "processor_seconds"), 20);
 }
 
+// Friction and a stop: errors of single steps say little of the end, and what is asked for may not be reached.  What is said is so.
+TEST(ErrorEstimate, IsNoMoreThanAskedWhereTheToleranceIsMet) {
+  const Workplace w;
+  w.write("slide.toml", "gravity = [0, 0, -9.81]\n" + body("g", 1, {-3, 0, 0}, {0.01, 0.01, 0.02}) +
+                            axial("prismatic", "rail", "ground", "g", {-3, 0, 0}, Vec3::UnitX()) + initial("g", "velocity = [1, 0, 0]") +
+                            "[[stop]]\nkind = \"slide\"\nname = \"s\"\njoint = \"rail\"\nlower = -0.005\nupper = 0.005\n"
+                            "stiffness = 1e5\nrestitution = 0.7\n[[friction]]\nname = \"f\"\njoint = \"rail\"\ncoefficient = 0.3\n" +
+                            in_time(0.06, 0.015));
+  for (const char* tolerance : {"1e-2", "1e-3", "1e-4", "1e-5"}) {
+    const Ran ran = succeeded(w.run(fmt::format("hilo-solve slide.toml -o run.h5 --set time.tolerance={}", tolerance)));
+    const bool is_met = text_of(w / "run.json").find("\"met\": true") != std::string::npos;
+    EXPECT_EQ(is_met, number_of(w, "run.json", "end") <= number_of(w, "run.json", "asked")) << tolerance;
+    EXPECT_EQ(is_met, ran.err.find("time.tolerance is not met") == std::string::npos) << tolerance << ran.err;
+    EXPECT_EQ(ran.err.find("round-off"), std::string::npos) << ran.err;  // equal steps, 2000 of them, are 6e-7 m off
+  }
+}
+
 // Truth: a parabola, in which the method errs by rounding alone, and a slow turn about an axis of inertia, for which four steps are more
 // than enough.  Such runs take no more steps than time.step asks for, and say why they are better than asked; one that is as good as asked
 // does not.
