@@ -101,9 +101,11 @@ Builder::Found Builder::find(const std::string& name, const std::string& where, 
   const auto block = !mesh_ || is_in(mesh_->mesh) ? -1 : std::ranges::find(mesh_->mesh.block_name, name) - mesh_->mesh.block_name.begin();
   const bool is_block = block >= 0 && block < std::ssize(mesh_->mesh.block_name);
   if (!mesh_ || !(is_block || is_in(mesh_->mesh))) {
-    if (std::ranges::any_of(scene_.entries("beam"), [&](const Entry& e) { return e.name == name; }))
+    if (std::ranges::any_of(scene_.entries("beam"), [&](const Entry& e) { return e.name == name; })) {
+      const auto section = std::ranges::find_if(body_by_name_, [&](const auto& body) { return body.first.starts_with(name + "."); });
       throw Error(where, fmt::format("\"{}\" is a beam, which goes by its sections here", name),
-                  fmt::format("\"{0}.0\" to \"{0}.end\", each a body", name));
+                  section == body_by_name_.end() ? "" : fmt::format("each is a body, as \"{}\"", section->first));
+    }
     const std::string near = suggest(name, all_names());
     throw Error(where, fmt::format("no region, set or body \"{}\"", name),
                 mesh_ || !near.empty() ? near : "no mesh is given: hilo-solve scene.toml tags.h5");
