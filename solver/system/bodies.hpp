@@ -36,7 +36,7 @@ class Bodies final : public Contribution, public Equations, public Turning, publ
     double stiffness, inertia;  // [N m], [kg m^2]
   };
   const Points& points_;
-  std::vector<Line> lines_;                // of each body; none where no body has a line
+  std::vector<Line> at_rest_, moving_;     // of each body, without and with inertia; none where no body has a line
   std::vector<std::array<Vec3, 4>> arms_;  // to the four points of each body, when first asked for
 };
 

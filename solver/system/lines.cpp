@@ -4,21 +4,24 @@
 
 #include "linear/tangent_reader.hpp"
 #include "system/bodies.hpp"
-#include "system/solids.hpp"
 #include "system/system.hpp"
-#include "system/welds.hpp"
 
 namespace hilo {
 namespace {
 
-/// Takes a tangent, and of the bodies with a line sums what resists their turns, and marks those that are held about their line.
+/// Takes a tangent, and of the bodies with a line sums what resists their turns.  Marks those whose turn about it is resisted: by moments
+/// about it alone, as of a beam along the line, which turns with them, or by more.
 class Turns final : public TangentReader {
  public:
-  explicit Turns(const System& system) : system_(system), sum(9 * system.bodies.size()), held(system.bodies.size()) {
-    of_.assign(static_cast<size_t>(system.first_joint_block()), -1);
-    for (size_t b = 0; b < system.bodies.size(); ++b)
-      if (system.body_block[b] >= 0 && !system.bodies[b].line.isZero(0))
-        of_[static_cast<size_t>(system.body_block[b]) + 1] = static_cast<int>(b);
+  explicit Turns(const System& system)
+      : system_(system), sum(9 * system.bodies.size()), twisted(system.bodies.size()), braced(system.bodies.size()) {
+    of_.assign(static_cast<size_t>(system.first_joint_block()), -1), turns_.assign(of_.size(), 0);
+    for (size_t b = 0; b < system.bodies.size(); ++b) {
+      if (system.body_block[b] < 0) continue;
+      const auto block = static_cast<size_t>(system.body_block[b]) + 1;
+      turns_[block] = 1;
+      if (!system.bodies[b].line.isZero(0)) of_[block] = static_cast<int>(b);
+    }
   }
   void add(int clique, const double* dense) override {
     const auto list = system_.layout.cliques[clique];
@@ -30,23 +33,30 @@ class Turns final : public TangentReader {
       const Body& body = system_.bodies[b];
       Eigen::Map<Mat3>(sum.data() + 9 * b) += K.block<3, 3>(3 * i, 3 * i);
       const Vec3 line = system_.start.R[b] * body.line;
-      if (by_others && (K.middleCols<3>(3 * i) * line).norm() > 1e-9 * body.size * K.norm()) held[b] = 1;
+      Eigen::VectorXd force = K.middleCols<3>(3 * i) * line;
+      const double rounding = 1e-9 * body.size * K.norm(), most = force.norm();
+      if (!(most > rounding)) continue;
+      twisted[b] = 1;
+      for (Eigen::Index k = 0; k < n; ++k)
+        if (list[k] >= 0 && list[k] < system_.first_joint_block() && turns_[static_cast<size_t>(list[k])] != 0)
+          force.segment<3>(3 * k) -= line * line.dot(force.segment<3>(3 * k));
+      if (force.norm() > rounding + 1e-6 * most) braced[b] = 1;
     }
   }
 
  private:
   const System& system_;
-  std::vector<int> of_;  // of a block of turns, its body
+  std::vector<int> of_;      // of a block of turns of a body with a line, the body
+  std::vector<char> turns_;  // blocks that are turns
 
  public:
-  bool by_others = false;  // than cells and welds, whose nodes lie on the line
-  std::vector<double> sum, held;
+  std::vector<double> sum, twisted, braced;
 };
 
 }  // namespace
 
 void Bodies::look_at_lines(const System& system) {
-  lines_.clear();
+  at_rest_.clear(), moving_.clear();
   if (std::ranges::all_of(system.bodies, [](const Body& b) { return b.line.isZero(0); })) return;
   Config still;
   Config::each_array([&](auto array) { (still.*array).resize((system.start.*array).size()); });
@@ -61,10 +71,7 @@ void Bodies::look_at_lines(const System& system) {
     unused.r.assign(3 * static_cast<size_t>(system.n_blocks()), 0.0);
     turns.sum.assign(9 * system.bodies.size(), 0.0);
     Pass pass{s, none, unused, &turns, node, body, 1, false};
-    for (const Equations* part : system.all<Equations>()) {
-      turns.by_others = part != &system.part<Solids>() && part != &system.part<Welds>();
-      part->evaluate(pass);
-    }
+    for (const Equations* part : system.all<Equations>()) part->evaluate(pass);
     std::vector<double> sum = turns.sum, out;
     system.comm->sum(sum);
     for (size_t b = 0; b < system.bodies.size(); ++b) out.push_back(Eigen::Map<Mat3>(sum.data() + 9 * b).norm());
@@ -75,23 +82,22 @@ void Bodies::look_at_lines(const System& system) {
   const std::vector<double> stiffness = resisted(s);
   s.slope = 0, s.chain = 1e-30, s.mass_slope = 1, s.rates_alone = true;  // mass alone
   const std::vector<double> mass = resisted(s);
-  system.comm->max(turns.held);
+  system.comm->max(turns.twisted), system.comm->max(turns.braced);
   constexpr double least = 1e-11;  // over what resists other turns
   const double length2 = system.length * system.length;
   for (size_t b = 0; b < system.bodies.size(); ++b) {
-    if (turns.held[b] > 0)
-      lines_.push_back({least * stiffness[b], least * mass[b]});
-    else
-      lines_.push_back({1e-6 * system.stiffness * length2, 1e-9 * system.mass * length2});
+    const Line free{1e-6 * system.stiffness * length2, 1e-9 * system.mass * length2}, held{least * stiffness[b], least * mass[b]};
+    at_rest_.push_back(turns.braced[b] > 0 ? held : free), moving_.push_back(turns.twisted[b] > 0 ? held : free);
   }
 }
 
 /// Without a force.  Where nothing else resists the turn it moves nothing, and the answer is the same whatever its tangent.  Where
-/// something does, the share is as small as leaves a matrix regular whose beam turns about itself: the tangent serves modes and buckling as
-/// it is.
+/// something does, the share is as small as leaves a matrix regular: the tangent serves modes and buckling as it is.  A beam along the line
+/// turns with it for nothing but its mass: at rest it is held as if alone.
 void Bodies::stiffen_line(Pass& p, size_t b) const {
-  if (points_.body_block[b] < 0 || b >= lines_.size()) return;
-  const double slope = lines_[b].stiffness * p.s.slope + lines_[b].inertia * p.s.mass_slope;
+  const std::vector<Line>& lines = p.s.mass_slope == 0 ? at_rest_ : moving_;
+  if (points_.body_block[b] < 0 || b >= lines.size()) return;
+  const double slope = lines[b].stiffness * p.s.slope + lines[b].inertia * p.s.mass_slope;
   const Vec3 line = p.s.end->R[b] * points_.bodies[b].line;
   Eigen::Matrix<double, 6, 6, Eigen::RowMajor> K = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>::Zero();
   K.bottomRightCorner<3, 3>() = slope * line * line.transpose();
