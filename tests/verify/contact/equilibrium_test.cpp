@@ -98,7 +98,7 @@ TEST(ContactEquilibrium, AStripLiesOnTwoRollersAndStaysThere) {
   const double L = 2 * half, theory = F * L * L * L / (48 * E * b * t * t * t / 12);
   EXPECT_NEAR(mid(0, 2), -theory, 0.04 * theory) << "points of contact stand 2.9 mm apart, or 4 %";
   EXPECT_NEAR(mid(mid.rows() - 1, 2), mid(0, 2), 1e-6 * theory) << "at rest";
-  EXPECT_NEAR(mid(mid.rows() - 1, 0), 0, 1e-6 * theory);
+  EXPECT_NEAR(mid(mid.rows() - 1, 0), 0, 1e-5 * theory);
   for (const char* side : {"left", "right"}) EXPECT_NEAR(r.history(fmt::format("contact/{}", side))(1, 2), F / 2, 1e-3 * F) << side;
 }
 

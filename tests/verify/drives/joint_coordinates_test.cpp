@@ -34,7 +34,7 @@ TEST(Coordinate, CountsTheTurnsOfAStart) {
   for (const auto& [scene, first, last] : {std::tuple{hinge + spring + load + time_of + "start = \"equilibrium\"\n", 10., 10.},
                                            std::tuple{hinge + drive + time_of, 9., 12.}}) {
     c.write("scene.toml", body("a") + scene);
-    const auto angle = c.solved().history("coordinate/j").col(1);
+    const Eigen::VectorXd angle = c.solved().history("coordinate/j").col(1);
     EXPECT_NEAR(angle[0], first, 1e-8);
     EXPECT_NEAR(angle[angle.size() - 1], last, 1e-8);
   }
