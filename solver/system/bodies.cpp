@@ -141,12 +141,41 @@ void Bodies::add_inertia(std::span<const int> group, const Config& v, const Conf
     if (group[b] >= 0 && points_.counts(static_cast<int>(b))) sum[group[b]] += points_.bodies[b].inertia(v.c[b], v.R[b], w.c[b], w.R[b]);
 }
 
+namespace {
+
+/// Axes of falling moments J, whose signs and, in a plane or space of equal moments, whose directions rounding does not choose: they are
+/// near those of the frame.
+Mat3 principal_axes(const Mat3& J) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(J);
+  const Vec3 m = eigen.eigenvalues().reverse();
+  Mat3 axes = eigen.eigenvectors().rowwise().reverse();
+  const double equal = 1e-6 * m[0];
+  const bool first = m[0] - m[1] <= equal, last = m[1] - m[2] <= equal;
+  if (first && last) return Mat3::Identity();
+  const auto along = [](const Vec3& axis) {  // the first of the frame's axes that is as near as any
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(axis[k]) > 0.99 * axis.cwiseAbs().maxCoeff()) return k;
+    return 0;
+  };
+  const auto turned = [&](const Vec3& axis) -> Vec3 { return axis[along(axis)] < 0 ? -axis : axis; };
+  if (first || last) {
+    const int own = first ? 2 : 0, one = (own + 1) % 3, other = (own + 2) % 3;
+    const Vec3 n = axes.col(own) = turned(axes.col(own));
+    axes.col(one) = turned((Mat3::Identity() - n * n.transpose()).col(along(Vec3::Ones() - n.cwiseAbs2())).normalized());
+    axes.col(other) = n.cross(axes.col(one));
+    return axes;
+  }
+  for (int i = 0; i < 2; ++i) axes.col(i) = turned(axes.col(i));
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return axes;
+}
+
+}  // namespace
+
 std::array<Vec3, 4> body_arms(const Body& b) {
   std::array<Vec3, 4> arms{Vec3::Zero(), Vec3(b.size, 0, 0), Vec3(0, b.size, 0), Vec3(0, 0, b.size)};
   if (b.mass > 0 && !b.J.isZero(0)) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(b.J);
-    Mat3 axes = eigen.eigenvectors().rowwise().reverse();
-    if (axes.determinant() < 0) axes.col(2) *= -1;
+    const Mat3 axes = principal_axes(b.J);
     for (int i = 0; i < 3; ++i) arms[1 + i] = b.size * axes.col(i);
   }
   return arms;

@@ -34,7 +34,7 @@ cmake --build "$folder" -j "$jobs"
 reports=$folder/reports
 rm -rf "$reports"
 mkdir -p "$reports"
-export ASAN_OPTIONS="log_path=$reports/report:exitcode=99:detect_leaks=1:malloc_context_size=20:allocator_may_return_null=1:alloc_dealloc_mismatch=0"
+export ASAN_OPTIONS="log_path=$reports/report:exitcode=99:detect_leaks=1:malloc_context_size=20:allocator_may_return_null=1:alloc_dealloc_mismatch=0:verify_asan_link_order=0"
 export UBSAN_OPTIONS="log_path=$reports/report:print_stacktrace=1"
 export LSAN_OPTIONS="suppressions=$here/leaks.txt:print_suppressions=0:exitcode=0"
 failed=0
