@@ -53,7 +53,7 @@ void Audit::start(const State& s) {
 }
 
 std::string Audit::look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor,
-                        double taken_away, const Taken* before) {
+                        double taken_away, const Taken* before, bool followed) {
   opens_dropped_row_ = false;
   next_ = {};
   next_.energy = energy_of(system_, end, Side::left);
@@ -68,7 +68,7 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   next_.rows = system_.violation(end.q, end.t, load_factor);
   next_.balance = total(next_.energy) - E0_ - next_.work + next_.dissipated;
   det_ = newton.least_det;
-  turn_ = system_.largest_turn(q0, end.q);
+  turn_ = followed ? System::Turn{} : system_.largest_turn(q0, end.q);
   if (!std::isfinite(next_.balance)) return "energies are not finite";
   if (det_.det <= 0) return system_.inside_out(det_);
   if (turn_.angle > turn_limit) return fmt::format("{} turns by {:.3g} rad in one step", system_.name(turn_), turn_.angle);

@@ -346,6 +346,11 @@ void RunParts::follow(const Carry& carry) {
   if (integrator) integrator->carry(carry);
 }
 
+void RunParts::recall(const Kept& memory) {
+  system.recall(memory);
+  if (system.traits().searches) follow(system.number());
+}
+
 void Steps::search(double h) {
   const bool moves = run_.analysis == Analysis::dynamic;
   if (const auto carry = run_.system.search(run_.state.q, moves ? &run_.state.v : nullptr, h)) run_.follow(*carry);

@@ -53,6 +53,8 @@ struct RunParts {
 
   /// The system has another structure: the solver, the state and the integrator follow.
   void follow(const Carry& carry);
+  /// Back to what the contributions remembered, after states that led elsewhere.
+  void recall(const Kept& memory);
   /// Why its error is far below what was asked, or "".
   std::string why_better() const;
   /// The run ends here for this reason.

@@ -64,6 +64,7 @@ class StaticSteps final : public Steps {
         failure = leave(next, reached);
       }
       if (!failure.empty()) {
+        if (before_rest_) run_.recall(*before_rest_);
         system.commit(state.q), system.settle(false);
         if (why.empty() || r.least_det.det <= 0) why = failure;
         const bool free = at_.done == 0 && touching(system) && !unheld(system, system.start).empty();  // it comes to rest soon, or hardly
@@ -126,7 +127,7 @@ class StaticSteps final : public Steps {
   /// A step to the share `next` of the loads: why it cannot be accepted, or "".
   std::string try_step(double next, State& reached, NewtonReport& r) {
     search(0);
-    ends_ = false;
+    ends_ = false, before_rest_.reset();
     System& system = run_.system;
     const State& state = run_.state;
     reached.t = next * end_;
@@ -141,6 +142,7 @@ class StaticSteps final : public Steps {
     const bool from_rest = !r.converged && !shorter_first && (sharp || touching(system));
     if (from_rest) {
       system.commit(state.q), system.settle(false);
+      before_rest_ = system.memory();
       State at = state;
       const RestReport rest = come_to_rest(run_, at, {reached.t, next});
       r = rest, ends_ = rest.ends;
@@ -176,11 +178,11 @@ class StaticSteps final : public Steps {
   }
 
   /// Its work is that of the mean of the forces at both ends of the step.
-  std::string look(const State& reached, const NewtonReport& r, double next) {
+  std::string look(const State& reached, const NewtonReport& r, double next, bool followed = false) {
     const State& state = run_.state;
     Taken before{stage_at(state.q, state.t), state.lambda};
     before.stage.elapsed = slow, before.stage.a = &no_acceleration_, before.stage.load_factor = at_.done, before.stage.end = &reached.q;
-    return run_.audit->look(state.q, reached, {&taken_, 1}, r, next, 0, &before);
+    return run_.audit->look(state.q, reached, {&taken_, 1}, r, next, 0, &before, followed);
   }
 
   /// To the state that lies ahead: why it cannot be accepted, or "".
@@ -205,14 +207,15 @@ class StaticSteps final : public Steps {
     const State unstable = reached;
     const std::string found = fmt::format("at {:.4g} of the loads the equilibrium is not stable: {}", next, unstable_->text);
     system.settle(false);
+    const Kept memory = system.memory();
     if (Stability(system, *run_.solver, reached.t, next).leave(*unstable_, reached.q, reached.lambda, false, run_.newton)) {
       take(reached, next);
-      if (system.fault(reached.q).empty() && look(reached, {}, next).empty()) {
+      if (system.fault(reached.q).empty() && look(reached, {}, next, true).empty()) {
         warn(place(),
              fmt::format("{}. The run goes on from a stable one, {:.3g} m away", found, system.largest_difference(unstable.q, reached.q)));
         return "";
       }
-      system.settle(false);
+      system.recall(memory);
       reached = unstable;
     }
     warn(place(), found +
@@ -261,6 +264,7 @@ class StaticSteps final : public Steps {
   double jump_ = 0;                          // of the step tried last [m], or 0
   bool unforeseen_ = false;                  // no jump, but a way that no tangent foresaw
   static constexpr int few_iterations = 5;   // a step that takes no more has not jumped, where telling would cost as much
+  std::optional<Kept> before_rest_;          // what was remembered before steps from rest, of the step tried last
   Taken taken_;                              // of the step tried last
   Config no_acceleration_;
 };

@@ -259,6 +259,19 @@ void System::archive(Archive& a) {
   for (const auto& part : parts_) part->archive(a);
 }
 
+Kept System::memory() {
+  Archive now;
+  now.is_aside = true;
+  archive(now);
+  return now.kept();
+}
+
+void System::recall(const Kept& memory) {
+  Archive then(memory);
+  then.is_aside = true;
+  archive(then);
+}
+
 Shares System::shares() const {
   std::vector<std::int64_t> nodes, blocks, cells;
   Shares out{{*comm, {}}, {*comm, {}}, {*comm, {}}, {}, {}};

@@ -116,6 +116,9 @@ class System : public Points {
   void commit(const Config& q, const Config* v = nullptr);
   /// What the contributions remember.
   void archive(Archive& a);
+  /// This rank's part of it, as it is now, and back to that: turns are counted from state to state, so a state alone does not tell them.
+  Kept memory();
+  void recall(const Kept& memory);
   /// How configurations and cells lie on this rank.  Collective.
   Shares shares() const;
 

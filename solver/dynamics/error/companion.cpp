@@ -31,22 +31,13 @@ void Companion::renew_solver() { solver_ = make_solver_(); }
 
 void Companion::begin(const State& s) {
   state_ = s, start_ = s.q, waiting_ = 0, begun_ = true;
-  memory_ = memory_now();
-}
-
-Kept Companion::memory_now() {
-  Archive now;
-  now.is_aside = true;
-  system_.archive(now);
-  return now.kept();
+  memory_ = system_.memory();
 }
 
 /// The system's memory becomes that of the other solution.
 void Companion::swap_memory() {
-  Kept now = memory_now();
-  Archive other(std::move(memory_));
-  other.is_aside = true;
-  system_.archive(other);
+  Kept now = system_.memory();
+  system_.recall(memory_);
   memory_ = std::move(now);
 }
 
@@ -109,7 +100,7 @@ bool Companion::try_step(double to) {
 void Companion::archive(Archive& a) {
   a("companion", begun_, waiting_, state_, start_, untold_);
   if (!begun_) return;
-  if (a.restores()) memory_ = memory_now();
+  if (a.restores()) memory_ = system_.memory();
   swap_memory();
   system_.archive(a);
   integrator_->archive(a, system_);

@@ -36,7 +36,6 @@ class Companion {
  private:
   bool step(double to, int cuts, ErrorEstimate& estimate);
   bool try_step(double to);
-  Kept memory_now();
   void swap_memory();
   System& system_;
   std::unique_ptr<Integrator> integrator_;

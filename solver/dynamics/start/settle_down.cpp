@@ -23,11 +23,13 @@ bool leave(RunParts& run, Stability& stability, const Unstable& unstable) {
   System& system = run.system;
   State& state = run.state;
   const State before = state;
+  const Kept memory = system.memory();
+  const auto go_back = [&] { run.recall(memory), state = before; };
   constexpr int most = 5;  // states on the way that are not stable either
   if (stability.leave(unstable, state.q, state.lambda, true, run.newton) && keep_at_rest(system, state.q, {}).empty()) return true;
   if (touching(system))
     for (const double nudge : {1e-3, -1e-3}) {
-      state = before;
+      go_back();
       std::optional<Unstable> from = unstable;
       for (int k = 0; k < most && from && !from->z.empty(); ++k) {
         std::vector<double> z = from->z;
@@ -38,7 +40,7 @@ bool leave(RunParts& run, Stability& stability, const Unstable& unstable) {
       }
       if (!from) return true;
     }
-  state = before;
+  go_back();
   system.commit(state.q), system.settle(false);
   return false;
 }

@@ -142,7 +142,7 @@ void Stability::tell_unknown(const std::string& solver) {
 
 std::optional<Stability::Way> Stability::descend(const Unstable& from, double side, const Config& q, const std::vector<double>& lambda,
                                                  bool mechanism, const NewtonOptions& options) {
-  Way at{q, lambda};
+  Way at{q, lambda, 0, {}};
   std::vector<double> z = from.z;
   for (double& x : z) x *= side * 1e-2 * system_.length;
   const int n = 3 * system_.first_joint_block();
@@ -179,13 +179,15 @@ std::optional<Stability::Way> Stability::descend(const Unstable& from, double si
 
 bool Stability::leave(const Unstable& from, Config& q, std::vector<double>& lambda, bool mechanism, const NewtonOptions& options) {
   if (from.z.empty()) return false;
+  system_.commit(q);
+  const Kept before = system_.memory();
   std::optional<Way> best;
   for (const double side : {1.0, -1.0}) {
-    system_.commit(q);
     std::optional<Way> way = descend(from, side, q, lambda, mechanism, options);
-    if (way && (!best || way->work < best->work)) best = std::move(way);
+    if (way && (!best || way->work < best->work)) best = std::move(way), best->memory = system_.memory();
+    system_.recall(before);
   }
-  if (best) q = best->q, lambda = best->lambda;
+  if (best) q = best->q, lambda = best->lambda, system_.recall(best->memory);
   system_.commit(q);
   return best.has_value();
 }

@@ -42,6 +42,7 @@ class Stability {
     Config q;
     std::vector<double> lambda;
     double work = 0;  // done against the forces [J]
+    Kept memory;      // of the contributions at its end
   };
   std::optional<int> below(const Config& q, const std::vector<double>& lambda, double mass);
   double curvature(const Config& q, const std::vector<double>& lambda, const std::vector<double>& z, double* noise);

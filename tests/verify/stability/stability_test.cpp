@@ -75,6 +75,46 @@ TEST(StaticStability, AStartFromEquilibriumTakesAStableOne) {
   EXPECT_EQ(said.find("not stable"), std::string::npos) << said;
 }
 
+namespace {
+
+/// A pendulum of 3 kg, 0.7 m up, on its hinge, with what holds its turn.
+std::string upright(const std::string& held, const std::string& time) {
+  return "gravity = [0, 0, -9.80665]\n" + body("p", 3, {0, 0, 0.7}, {0.2, 0.3, 0.1}) +
+         axial("revolute", "pin", "ground", "p", Vec3::Zero(), {0, 1, 0}) + held + "[time]\n" + time;
+}
+
+}  // namespace
+
+// Truth: 10 th = m g L sin(th) = 19.288 N m at th = +-1.92882, more than half a turn from the other side: whole turns begin there as they
+// were on the way, and all stays at rest.
+TEST(StaticStability, TheSideThatIsLeftToWindsNothing) {
+  Bar c;
+  const double weight = 3 * 9.80665 * 0.7, at = 1.9288157299592192;
+  const auto solve = [&](const std::string& held, const std::string& time) {
+    c.write("upright.toml", upright(held, time));
+    succeeded(c.run("hilo-solve --quiet upright.toml -o run.h5"));
+    return c.results();
+  };
+  const std::string torsion = spring("torsion", "k", "ground", "p", "axis = [0, 1, 0]\nstiffness = 10"),
+                    bushing = spring("bushing", "k", "ground", "p", "at = [0, 0, 0]\naxis = [0, 0, 1]\nangular_stiffness = [0, 10, 0]"),
+                    rest = "start = \"equilibrium\"\n";
+  for (const std::string& held : {torsion, bushing}) {
+    const Results r = solve(held, rest + "end = 0.1\nstep = 0.02\n");
+    const auto angle = r.history("coordinate/pin").col(1);
+    EXPECT_NEAR(std::abs(angle[0]), at, 1e-6) << held;
+    EXPECT_NEAR(std::abs(r.history("spring/k")(0, 4)), weight * std::sin(at), 1e-4) << held;
+    EXPECT_LT(r.history("energy").col(0).maxCoeff(), 1e-9) << held;
+  }
+  EXPECT_NEAR(std::abs(solve(torsion, rest + "analysis = \"modes\"\nmodes = 1\n").history("coordinate/pin")(0, 1)), at, 1e-6);
+  const std::string stop = spring("torsion", "k", "ground", "p", "axis = [0, 1, 0]\nstiffness = 0.001") +
+                           "[[stop]]\nkind = \"angle\"\nname = \"s\"\njoint = \"pin\"\nlower = -2.2\nupper = 2.2\nstiffness = 1000\n";
+  for (const std::string& time : {rest + "end = 0.1\nstep = 0.02\n", std::string("analysis = \"static\"\nsteps = 4\n")}) {
+    const auto angle = solve(stop, time).history("coordinate/pin").col(1);
+    const double turned = std::abs(angle[angle.size() - 1]);
+    EXPECT_NEAR(1000 * (turned - 2.2) + 0.001 * turned, weight * std::sin(turned), 1e-4) << time;
+  }
+}
+
 // Truth: the same by path, in tens of states.
 TEST(LoadPath, OfABarWithASmallSideLoadArrives) {
   Bar c;
