@@ -61,7 +61,7 @@ class PathSteps final : public Steps {
     if (run_.report.steps == 0) {
       require_held(system, state.q, end_ / n_, 1 / n_, time_.where("analysis"));
       run_.audit->start(state);
-      put_out({0, 1, 0}, [&] { run_.recorder->first(state, run_.audit->ledger()); });
+      put_out({0, 1, 0}, [&] { record_rest(state, 0); });
       at_.before = state.q;
     }
     system.commit(state.q), system.settle(false);  // where the first step begins, also of a run that goes on

@@ -356,6 +356,14 @@ void Steps::search(double h) {
   if (const auto carry = run_.system.search(run_.state.q, moves ? &run_.state.v : nullptr, h)) run_.follow(*carry);
 }
 
+void Steps::record_rest(const State& rest, double load_factor) {
+  Config none;
+  combine(none, {{0, &rest.q}});
+  Stage s = stage_at(rest.q, rest.t);
+  s.a = &none, s.load_factor = load_factor, s.elapsed = slow;
+  run_.recorder->first(rest, run_.audit->ledger(), &s, rest.lambda);
+}
+
 std::string RunParts::why_better() const {
   return hilo::why_better(plan, report, estimate, integrator->order(), system.length, scene.table("time"));
 }

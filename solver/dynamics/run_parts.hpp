@@ -78,6 +78,8 @@ class Steps {
  protected:
   /// What can meet in a step of length h from the state is looked for, and all that is laid out like the unknowns follows.
   void search(double h);
+  /// The first row: the state at rest under this share of the loads, with the forces that it has there.
+  void record_rest(const State& rest, double load_factor);
   RunParts& run_;
   Pause pause_;
 };

@@ -39,7 +39,7 @@ class StaticSteps final : public Steps {
     if (at_.done == 0) {
       if (!touching(system)) require_held(system, state.q, end_ / n_, 1.0 / n_, run_.scene.table("time").where("analysis"));
       run_.audit->start(state);
-      run_.recorder->first(state, run_.audit->ledger());
+      record_rest(state, 0);
     }
     system.commit(state.q), system.settle(false);  // where the first step begins, also of a run that goes on
     Progress progress(run_.options.quiet || system.comm->rank != 0, 0, 1);

@@ -275,7 +275,7 @@ class BucklingSteps final : public Steps {
     for (const LinearRegion& r : system.part<LinearRegions>().regions) require_stiffening(system.modes[static_cast<size_t>(r.modes)]);
     put_to_rest(system, *run_.solver, drawn, where);
     run_.audit->start(drawn);
-    run_.recorder->first(drawn, run_.audit->ledger());
+    record_rest(drawn, 0);
     Progress progress(run_.options.quiet, 0, time_.number("modes"));
     const std::vector<FoundShape> shapes =
         Loaded(system, *run_.solver, drawn, where).shapes(static_cast<int>(time_.number("modes")), where, [&](int found) {

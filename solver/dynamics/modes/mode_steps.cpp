@@ -82,7 +82,7 @@ class ModeSteps final : public Steps {
       contacts->hold(rest.q);
     }
     run_.audit->start(rest);
-    run_.recorder->first(rest, run_.audit->ledger());
+    record_rest(rest, 1);
     Progress progress(run_.options.quiet, 0, time_.number("modes"));
     const int wanted = static_cast<int>(time_.number("modes"));
     State relative = rest;  // without the acceleration of supports

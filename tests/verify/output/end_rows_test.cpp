@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The first and the last row of what belongs to the inside of steps: forces of an unbalanced rotor.
+// The first and the last row of what belongs to the inside of steps: forces of an unbalanced rotor, and of states of rest.
 #include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
@@ -74,4 +74,35 @@ TEST(EndRows, AtAJumpWhereTheRunHadEnded) {
 }
 
 }  // namespace
+// Truth: in row 0 of modes, a state of rest, of statics and of buckling springs and stops have the forces of their laws at the angle told
+// there, and joints those that balance them.
+TEST(EndRows, OfAStateOfRest) {
+  const Workplace w;
+  const auto pendulum = [](double height) {
+    return "gravity = [0, 0, -9.80665]\n" + body("p", 3, {0, 0, height}, {0.2, 0.3, 0.1}) +
+           axial("revolute", "j", "ground", "p", Vec3::Zero(), {0, 1, 0}, "reactions = \"ground\"");
+  };
+  const auto wound = [](const std::string& name, double stiffness, double angle) {
+    return spring("torsion", name, "ground", "p", fmt::format("axis = [0, 1, 0]\nstiffness = {}\nangle = {}", stiffness, angle));
+  };
+  const auto solve = [&](const std::string& scene) {
+    w.write("scene.toml", scene);
+    succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5"));
+    return Results(w / "run.h5");
+  };
+  const Results modes = solve(pendulum(0.7) + wound("k", 30, 0.05) +
+                              "[[stop]]\nkind = \"angle\"\nname = \"s\"\njoint = \"j\"\nupper = 0.1\nstiffness = 20\n" +
+                              "[time]\nanalysis = \"modes\"\nmodes = 1\nstart = \"equilibrium\"\n");
+  const double angle = modes.history("coordinate/j")(0, 1);
+  EXPECT_GT(angle, 0.11);
+  EXPECT_NEAR(modes.history("joint/j")(0, 2), 3 * 9.80665, 1e-6);
+  EXPECT_NEAR(modes.history("spring/k")(0, 4), -30 * (angle - 0.05), 1e-6);
+  EXPECT_NEAR(modes.history("stop/s").row(0).tail(3).norm(), 20 * (angle - 0.1), 1e-6);
+  const Results steps = solve(pendulum(-0.7) + wound("k", 5, 0.3) + "[time]\nanalysis = \"static\"\nsteps = 2\n");
+  EXPECT_NEAR(steps.history("spring/k")(0, 4), 5 * 0.3, 1e-9);
+  const Results shapes = solve(pendulum(0.7) + wound("k", 15, 0.1) + wound("l", 15, -0.1) + "[time]\nanalysis = \"buckling\"\nmodes = 1\n");
+  EXPECT_NEAR(shapes.history("spring/k")(0, 4), 15 * 0.1, 1e-9);
+  EXPECT_NEAR(shapes.history("spring/l")(0, 4), -15 * 0.1, 1e-9);
+}
+
 }  // namespace hilo::test::end_rows_test
