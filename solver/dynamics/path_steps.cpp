@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "dynamics/jump.hpp"
 #include "dynamics/linear_step.hpp"
@@ -150,6 +151,12 @@ class PathSteps final : public Steps {
     return solved.ok;
   }
 
+  /// Why the first tangent goes nowhere, where `pushes` is what the loads add to the residual.
+  std::string moves_nothing(const Numbers& pushes) const {
+    const double most = std::ranges::max(pushes | std::views::transform([](double x) { return std::abs(x); }));
+    if (!(run_.system.comm->max(most) > 0)) return "nothing loads or moves the scene";
+    return "the load moves nothing until it buckles: use analysis = \"buckling\", \"static\", or a small side load";
+  }
   /// The way ahead of unit length: on from the state before, or by the first tangent.
   bool way_ahead(Way& way) {
     const State& state = run_.state;
@@ -159,10 +166,11 @@ class PathSteps final : public Steps {
     } else {
       Residual r;
       evaluate(state.q, state.lambda, 0, r, true);
-      if (!solve(by_load(state.q, state.lambda, 0, r), way.z)) return false;
+      const Numbers pushes = by_load(state.q, state.lambda, 0, r);
+      if (!solve(pushes, way.z)) return false;
       if (const std::optional<int> below = run_.solver->eigenvalues_below_zero(run_.system.first_joint_block())) at_.below = *below;
       at_.unit = std::sqrt(dot(way.z, way.z)), way.p = 1;
-      if (!(at_.unit > 0)) return why_ = "nothing loads or moves the scene", false;
+      if (!(at_.unit > 0)) return why_ = moves_nothing(pushes), false;
       std::fill(way.z.begin() + 3 * run_.system.first_joint_block(), way.z.end(), 0.0);
     }
     if (run_.report.steps > 0) {

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "dynamics/jump.hpp"
+#include "dynamics/linear_step.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start/from_rest.hpp"
 #include "dynamics/start/held.hpp"
@@ -71,7 +72,10 @@ class StaticSteps final : public Steps {
         if (ends_ || at_.step <= std::ldexp(1.0 / n_, -(free ? 2 : run_.max_cuts))) {
           if (at_.least.det < 0.01 && r.least_det.det > 0) why += "; " + system.inside_out(at_.least);
           if (r.least_det.det > 0)
-            why += touching(system)
+            why += !touching(system) && at_.done == 0 && !rests_unloaded()
+                       ? "; springs or motors push without the loads where the scene is drawn: analysis = \"dynamic\" or \"modes\" with "
+                         "time.start = \"equilibrium\" finds its rest"
+                   : touching(system)
                        ? "; a part may slide where friction holds no more, or part from what holds it: a run in time shows where it goes"
                        : "; where a structure bears no more, analysis = \"path\" finds the limit and goes past it";
           return run_.stop(why + unheld(system, system.start));
@@ -167,6 +171,15 @@ class StaticSteps final : public Steps {
     take(reached, next);
     const std::string fault = system.fault(reached.q);
     return fault.empty() ? look(reached, r, next) : fault;
+  }
+
+  /// Whether the first state, without the loads, is at rest.
+  bool rests_unloaded() {
+    Stage s = stage_at(run_.state.q, 0);
+    s.a = &no_acceleration_, s.load_factor = 0, s.elapsed = slow;
+    Residual r;
+    assemble(run_.system, *run_.solver, s, run_.state.lambda, r, false);
+    return run_.system.comm->max(relative_residual(run_.system, r)) < 1e-3;
   }
 
   /// What memory makes of a state, and its stage for what looks at it.

@@ -115,6 +115,25 @@ TEST(StaticStability, TheSideThatIsLeftToWindsNothing) {
   }
 }
 
+// Truth: a load along a straight linkage moves nothing before it buckles, and load steps from a wound spring begin at no rest: both are
+// told with what finds an answer.
+TEST(StaticStability, WhatMovesNothingAndWhatIsWoundAreTold) {
+  Bar c;
+  const auto said = [&](const std::string& scene) {
+    c.write("scene.toml", scene);
+    const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
+    EXPECT_EQ(ran.exit, 3) << ran.err;
+    return ran.err;
+  };
+  expect_words(said(bar(0, "analysis = \"path\"\nsteps = 20\nreach = 0.3\n")), "the load moves nothing until it buckles");
+  const std::string wound =
+      said("gravity = [0, 0, -9.80665]\n" + body("p", 3, {0, 0, -0.7}, {0.2, 0.3, 0.1}) +
+           axial("revolute", "pin", "ground", "p", Vec3::Zero(), {0, 1, 0}) +
+           spring("torsion", "k", "ground", "p", "axis = [0, 1, 0]\nstiffness = 30\nangle = 10") + in_steps(20, "", "static"));
+  expect_words(wound, "time.start = \"equilibrium\"");
+  EXPECT_EQ(wound.find("\"path\""), std::string::npos) << wound;
+}
+
 // Truth: the same by path, in tens of states.
 TEST(LoadPath, OfABarWithASmallSideLoadArrives) {
   Bar c;
