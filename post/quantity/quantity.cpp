@@ -80,12 +80,13 @@ Column between_column(const Entry& q, const RunFile& run) {
   return c;
 }
 
-/// Root of the mean square of what is straight between samples.
+/// Root of the mean square, by the trapezoid rule of squares: of smooth vibrations it lacks nothing, where straight lines between samples
+/// cut their peaks, and of a jump between two samples it is the mean over all places of it.
 double rms(const Column& c) {
   double sum = 0;
   for (size_t i = 1; i < c.t.size(); ++i) {
     const double a = c.value[i - 1], b = c.value[i];
-    sum += (c.t[i] - c.t[i - 1]) * (a * a + a * b + b * b) / 3;
+    sum += (c.t[i] - c.t[i - 1]) * (a * a + b * b) / 2;
   }
   return std::sqrt(sum / (c.t.back() - c.t.front()));
 }

@@ -35,6 +35,18 @@ std::map<std::string, double> values(const std::string& json) {
   return out;
 }
 
+// Truth: a mass on a spring, cos(10 t) m/s, over two periods of 12 steps each: 1/sqrt(2) m/s.
+TEST(Quantity, rms_of_a_vibration_in_few_rows) {
+  const Workplace place;
+  place.write("scene.toml",
+              body("b", 2, Vec3::Zero(), {1, 1, 1}) + joint("prismatic", "j", "ground", "b", Vec3::Zero(), "axis = [1, 0, 0]\n") +
+                  spring("axial", "k", "ground", "b", "at_a = [-1, 0, 0]\nat_b = [0, 0, 0]\nstiffness = 200") +
+                  initial("b", "velocity = [1, 0, 0]") + probe("p", "b") + quantity("v", "kind = \"rms\"\nformula = \"v = probe.p.vx\"") +
+                  "[time]\nend = 1.2566370614359172\nstep = 0.05235987755982988\nintegrator = \"gauss\"\n");
+  succeeded(place.run("hilo-solve scene.toml -o run.h5"));
+  EXPECT_NEAR(values(succeeded(place.run("hilo-post quantity run.h5 --json")).out)["v"], std::sqrt(0.5), 1e-3);
+}
+
 TEST(Quantity, meets_closed_forms_and_run_json_has_it) {
   const Workplace place;
   place.write("scene.toml",
