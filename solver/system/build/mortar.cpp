@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/build/mortar.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
@@ -112,6 +113,30 @@ struct Point {
   FacetShape slave, master;
 };
 
+/// Rows times the motions of the slave nodes that have one, factored.
+class TiedNodes {
+ public:
+  explicit TiedNodes(std::span<const MortarRow> rows) {
+    for (const MortarRow& row : rows) column_.emplace(row.node, static_cast<int>(column_.size()));
+    const auto n = static_cast<Eigen::Index>(rows.size());
+    Eigen::SparseMatrix<double> N(n, n);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (size_t k = 0; k < rows.size(); ++k)
+      for (int t = 0; t < rows[k].n_slave; ++t)
+        if (const auto at = column_.find(rows[k].term[t].first); at != column_.end())
+          entries.emplace_back(static_cast<int>(k), at->second, rows[k].term[t].second);
+    N.setFromTriplets(entries.begin(), entries.end());
+    factors_.compute(N);
+  }
+  bool ok() const { return factors_.info() == Eigen::Success; }
+  /// By row of the node of the row of this number.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const { return factors_.solve(right); }
+
+ private:
+  std::map<int, int> column_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> factors_;
+};
+
 struct Box {
   Vec3 low, high;
   bool meets(const Box& other, double by) const {
@@ -158,6 +183,8 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
   };
   std::map<int, Sum> sums;
   double area = 0, covered = 0;
+  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();  // of 1 and x from here, over what is covered
+  const Vec3 here = slave.empty() ? Vec3::Zero() : X[slave.front().node[0]];
   for (const MortarFacet& f : slave) {
     const Vec3 whole = normal_of(f, X);
     const double size = std::sqrt(whole.norm()), limit = gap < 0 ? size / 20 : gap, reach = std::max(limit, size / 2);
@@ -221,6 +248,9 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
       for (const Point& at : points) {
         const Eigen::Map<const Eigen::VectorXd> N(at.slave.N, f.n);
         D += at.w * N, M += at.w * N * N.transpose();
+        Eigen::Vector4d x(1, 0, 0, 0);
+        for (int a = 0; a < f.n; ++a) x.tail<3>() += at.slave.N[a] * (X[f.node[a]] - here);
+        moments += at.w * x * x.transpose();
       }
     if (f.n <= 4 && facet_covered > least_dual * own_area) psi = D.asDiagonal() * M.inverse();
     const Eigen::MatrixXd n = psi * M;
@@ -237,6 +267,8 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
         }
     }
   }
+  const Vec3 middle = moments.block<3, 1>(1, 0) / moments(0, 0);
+  out.spread = moments.block<3, 3>(1, 1) / moments(0, 0) - middle * middle.transpose();
   out.n_nodes = static_cast<int>(sums.size()), out.covered = area > 0 ? covered / area : 0;
   for (const auto& [node, sum] : sums) {
     if (!(sum.tied > share_tied * sum.whole)) {
@@ -259,24 +291,34 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
 }
 
 void close_gaps(std::span<const MortarRow> rows, std::span<Vec3> X) {
-  std::map<int, int> column;
-  for (const MortarRow& row : rows) column.emplace(row.node, static_cast<int>(column.size()));
-  const auto n = static_cast<Eigen::Index>(rows.size());
-  Eigen::SparseMatrix<double> N(n, n);
-  Eigen::MatrixXd gap = Eigen::MatrixXd::Zero(n, 3);
-  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixXd gap = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), 3);
   for (size_t k = 0; k < rows.size(); ++k)
-    for (size_t t = 0; t < rows[k].term.size(); ++t) {
-      const auto& [node, w] = rows[k].term[t];
-      gap.row(static_cast<Eigen::Index>(k)) -= w * X[node].transpose();
-      const auto at = column.find(node);
-      if (static_cast<int>(t) < rows[k].n_slave && at != column.end()) entries.emplace_back(static_cast<int>(k), at->second, w);
+    for (const auto& [node, w] : rows[k].term) gap.row(static_cast<Eigen::Index>(k)) -= w * X[node].transpose();
+  const TiedNodes nodes(rows);
+  if (!nodes.ok()) return;  // what stays open is refused
+  const Eigen::MatrixXd move = nodes.solve(gap);
+  for (size_t k = 0; k < rows.size(); ++k) X[rows[k].node] += move.row(static_cast<Eigen::Index>(k)).transpose();
+}
+
+TurnHeld least_held_turn(const Mortar& mortar, std::span<const Vec3> X) {
+  const TiedNodes nodes(mortar.rows);
+  if (!nodes.ok()) return {1, Vec3::Zero()};
+  const Vec3 o = X[mortar.rows.front().node];
+  Eigen::MatrixXd other = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(mortar.rows.size()), 4);
+  for (size_t k = 0; k < mortar.rows.size(); ++k)
+    for (size_t t = mortar.rows[k].n_slave; t < mortar.rows[k].term.size(); ++t) {
+      const auto& [node, w] = mortar.rows[k].term[t];
+      other.row(static_cast<Eigen::Index>(k)) -= w * Eigen::RowVector4d(1, X[node][0] - o[0], X[node][1] - o[1], X[node][2] - o[2]);
     }
-  N.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(N);
-  if (factors.info() != Eigen::Success) return;  // what stays open is refused
-  const Eigen::MatrixXd move = factors.solve(gap);
-  for (const MortarRow& row : rows) X[row.node] += move.row(column.at(row.node)).transpose();
+  // a shift v and a turn w about o move the node of row i by a_i v + w x p_i, with a_i and p_i in row i of this
+  const Eigen::MatrixXd moved = nodes.solve(other);
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+  for (Eigen::Index k = 0; k < moved.rows(); ++k) sum += mortar.rows[k].own * moved.row(k).transpose() * moved.row(k);
+  const Vec3 first = sum.block<3, 1>(1, 0);
+  const Mat3 spread = (sum.block<3, 3>(1, 1) - first * first.transpose() / sum(0, 0)) / sum(0, 0);
+  const auto turned = [](const Mat3& s) { return Mat3(s.trace() * Mat3::Identity() - s); };
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Mat3> least(turned(spread), turned(mortar.spread));
+  return {least.eigenvalues()[0], least.eigenvectors().col(0).normalized()};
 }
 
 }  // namespace hilo

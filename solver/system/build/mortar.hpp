@@ -30,6 +30,7 @@ struct Mortar {
   std::vector<MortarRow> rows;
   int n_nodes = 0;        // of the slave side
   double covered = 0;     // share of the slave side's area
+  Mat3 spread;            // mean of (x - centre) (x - centre)^T over what is covered [m^2]
   double facet = 0;       // largest tied slave facet, root of its area [m]
   double widest = 0;      // largest gap that is within the limit [m]
   double open = 0;        // largest gap beyond it, in front of a node without a row [m]
@@ -44,5 +45,13 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
 
 /// Moves nodes of the slave side by n^-1 times the gap, so that the rows vanish at X.
 void close_gaps(std::span<const MortarRow> rows, std::span<Vec3> X);
+
+/// How rows hold turns of the other side while the slave side moves with it: mean squared motion of the slave's nodes over that of the
+/// covered patch, in the turn where it is least.  About 1 where the patch is glued, 0 at a hinge.
+struct TurnHeld {
+  double share;
+  Vec3 axis;
+};
+TurnHeld least_held_turn(const Mortar& mortar, std::span<const Vec3> X);
 
 }  // namespace hilo

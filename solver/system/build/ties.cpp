@@ -102,6 +102,13 @@ void Builder::find_tie(const Entry& e, const std::array<std::vector<PairFacet>, 
     tie.tied.push_back(row.node);
   }
   mortar_.push_back(found.rows);
+  constexpr double hinge = 0.05;
+  if (const TurnHeld turn = least_held_turn(found, mesh.X); turn.share < hinge)
+    warn(e.place.text(),
+         fmt::format("{}: a hinge about {}: {} nodes of \"{}\" have too little of \"{}\" before them to hold its turn ({}mesh \"{}\" finer "
+                     "there)",
+                     e.label(), place((100 * turn.axis).array().round() / 100 + 0.), found.rows.size(), e.text("b"), e.text("a"),
+                     tie.turned ? "" : "swap a and b, or ", e.text("b")));
   if (mesh.facet_sets.contains(e.text("b")) && found.rows.size() < static_cast<size_t>(found.n_nodes))
     warn(e.place.text(), fmt::format("{}: {} of {} nodes of \"{}\" face nothing of \"{}\" and stay free", e.label(),
                                      static_cast<size_t>(found.n_nodes) - found.rows.size(), found.n_nodes, e.text("b"), e.text("a")));

@@ -269,5 +269,25 @@ TEST(Ties, ThatCannotBeAreRefused) {
   expect_refused(twice, {}, "Bzmin", "faces \"Azmax\" in two layers");
 }
 
+// Truth: a strip that stands edge-on on facets fifteen times as wide turns about the nodes in its middle; one that the block follows rings
+// at a twentieth of a steel cantilever's frequency or more.
+TEST(Ties, AHingeIsTold) {
+  for (const bool strip_is_b : {false, true}) {
+    SceneCase c(solid(2e11, 0, 8000) + (strip_is_b ? tie("Azmax", "Bzmin") : tie("Bzmin", "Azmax")) + held("Azmin") +
+                "[time]\nanalysis = \"modes\"\nmodes = 1\n");
+    c.use(together(
+        block_mesh({.shape = Shape::tet10, .n = {2, 2, 1}, .high = {0.12, 0.12, 0.1}, .regions = {"A"}}),
+        block_mesh({.shape = Shape::hex20r, .n = {2, 1, 3}, .low = {0.01, 0.058, 0.1}, .high = {0.11, 0.062, 0.4}, .regions = {"B"}})));
+    const Ran ran = c.solve();
+    const double whole = std::pow(1.8751 / 0.3, 2) * std::sqrt(2e11 / 8000 / 12) * 0.004 / (2 * std::numbers::pi);
+    const double ratio = c.results().at("mode", 1)(0) / whole;
+    if (strip_is_b)
+      EXPECT_EQ(ran.err.find("hinge"), std::string::npos) << ran.err;
+    else
+      expect_end(ran, 0, "tie \"weld\": a hinge about (");
+    EXPECT_NEAR(ratio, strip_is_b ? 1 : 0.06, 0.05);
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test::ties_test
