@@ -155,7 +155,7 @@ class LightSolver final : public SerialKktSolver {
     SolveReport report = factor_and_iterate(b, x, tolerance);
     if ((!report.ok || rate_ > 1) && factors_->sharpen()) before += report.iterations, report = factor_and_iterate(b, x, tolerance);
     if (!report.ok && is_definite_) {
-      if (!indefinite_ || !told_)
+      if (!indefinite_ || (!told_ && has_whole_diagonal()))  // rows may hold what the rest leaves free
         warn("", fmt::format("{}: {}; unsymmetric factors {}", name(), report.message, indefinite_ ? "instead" : "from here on"));
       told_ = true;
       if (indefinite_) aside_ = std::move(factors_), waits_ = rest_ = std::min(2 * rest_ + 1, 15);
@@ -185,10 +185,7 @@ class LightSolver final : public SerialKktSolver {
 
   SolveReport factor_and_iterate(std::span<const double> b, std::span<double> x, double tolerance) {
     ready_ = false;
-    if (!factor())
-      return is_definite_ ? SolveReport::failed(
-                                "the stiffness is not positive definite for now, as of a part that is unstable or held by contact alone")
-                          : SolveReport::singular();
+    if (!factor()) return is_definite_ ? SolveReport::failed("the matrix is not positive definite") : SolveReport::singular();
     const SolveReport report = iterate(b, x, tolerance, 60);
     rate_ = report.iterations / -std::log10(std::clamp(report.residual, 1e-12, 0.5));
     excess_ = 0;
