@@ -30,6 +30,16 @@ double skew(const Mesh& mesh, std::int64_t c) {
   return std::max(angle[1], length[1] > thin * length[0] ? angle[2] / worst_over_second : 0);
 }
 
+/// How many times a hexahedron's longest edges (mean of four) are as long as its shortest.
+double slenderness(const Mesh& mesh, std::int64_t c) {
+  Vec3 along[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  const auto nodes = mesh.cell(c);
+  for (int a = 0; a < 8; ++a)
+    for (int r = 0; r < 3; ++r) along[r] += hex_corner[a][r] * mesh.X[nodes[a]];
+  const auto [least, most] = std::minmax({along[0].norm(), along[1].norm(), along[2].norm()});
+  return most / least;
+}
+
 /// How far the longest way an edge of a quadratic cell leaves the straight line goes across the cell, along its shortest edge and over that
 /// edge's length: bulge over thickness of a curved wall.
 template <size_t n>
@@ -47,11 +57,12 @@ double bulge(const Mesh& mesh, std::int64_t c, const int (&edges)[n][2], int n_c
 }
 constexpr int wedge15_edge[9][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
 
-/// The measure of a cell that its shape is judged by: skew of hex8, bulge of the quadratic shapes that lock by it.
-double measure(const Mesh& mesh, std::int64_t c) {
+/// The measure of a cell that its shape is judged by: skew of hex8, or slenderness where they flow, bulge of the quadratic shapes that lock
+/// by it.
+double measure(const Mesh& mesh, std::int64_t c, bool flows) {
   switch (static_cast<Shape>(mesh.shape[c])) {
     case Shape::hex8:
-      return skew(mesh, c);
+      return flows ? slenderness(mesh, c) : skew(mesh, c);
     case Shape::hex20:
       return bulge(mesh, c, Hex20::edge, 8);
     case Shape::tet10:
@@ -67,6 +78,12 @@ double measure(const Mesh& mesh, std::int64_t c) {
 constexpr double much_skew = 0.1, much_bulge = 0.15;
 /// How much too stiff a beam of skewed hex8 is: this times skew^2, over the square of the cells across.
 constexpr double stiffness_of_skew = 24;
+/// How much too stiff a beam of hex8 with 2 x 2 x 2 points and one mean dilatation is, times the square of the cells across.  A cell that
+/// bends to a curvature k has shear strains k x, and no change of volume to go with the axial strains k y.
+double stiffness_of_plastic_hex8(const Lame& c, double slenderness_squared) {
+  const double G_over_E = (c.lambda + c.mu) / (3 * c.lambda + 2 * c.mu);
+  return G_over_E * slenderness_squared - (1 - 4. / 3 * G_over_E);
+}
 /// Share of a region's cells below which a shape is not worth a word: fillers between better ones.
 constexpr double few = 0.05;
 constexpr double nearly_incompressible = 0.45;
@@ -77,12 +94,13 @@ void Builder::warn_of_limits() const {
   if (!mesh_) return;
   const Mesh& mesh = mesh_->mesh;
   constexpr int columns = 2 * n_shapes;  // by shape: cells, and squares of their measure
+  const auto flows = [](const Region& region) { return region.material && material_kinds().at(region.material->kind).n_state > 0; };
   std::vector<double> sums(regions_.size() * columns, 0.0);
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
     if (regions_[mesh.region[c]].fidelity == Fidelity::rigid || mesh.shape[c] >= n_shapes) continue;
     if (!shell_axis_.empty() && shell_axis_[static_cast<size_t>(c)] > 0) continue;
     double* row = sums.data() + static_cast<size_t>(mesh.region[c]) * columns;
-    row[mesh.shape[c]] += 1, row[n_shapes + mesh.shape[c]] += std::pow(measure(mesh, c), 2);
+    row[mesh.shape[c]] += 1, row[n_shapes + mesh.shape[c]] += std::pow(measure(mesh, c, flows(regions_[mesh.region[c]])), 2);
   }
   comm_.sum(sums);
   std::vector<double> reduced = reduced_;
@@ -93,7 +111,7 @@ void Builder::warn_of_limits() const {
       warn(regions_[r].name, "plastic hex20 cells are integrated with 2 x 2 x 2 points (hex20r), since they lock with 3 x 3 x 3");
     const double* row = sums.data() + r * columns;
     const Region& region = regions_[r];
-    const bool metal = region.material && material_kinds().at(region.material->kind).n_state > 0;  // flows
+    const bool metal = flows(region);
     if (metal && region.fidelity == Fidelity::linear)
       warn(region.name,
            "a linear region does not yield: stresses above the yield stress are those of an elastic material (tag it nonlinear)");
@@ -112,8 +130,11 @@ void Builder::warn_of_limits() const {
                          nu > nearly_incompressible ? fmt::format(" and at a Poisson's ratio of {:.4g}", nu) : ""));
       } else if (shape == Shape::hex8 && metal)
         warn(region.name,
-             "plastic hex8 in bending: walls one cell thick are 20 to 50 % off, walls of two cells 2 % (hilo-import --order 2 makes "
-             "hex20r)");
+             fmt::format(
+                 "plastic hex8, edges in the ratio {:.2g} (mean): a wall bent along the longest, its thickness along the shortest, is "
+                 "{:+.0f} % too stiff with two cells across, four times that with one, a quarter with four (hex20r: hilo-import "
+                 "--order 2; or shorter cells)",
+                 mean, 100 * stiffness_of_plastic_hex8(linear_moduli(material_of(region)), mean * mean) / 4));
       else if (shape == Shape::hex8 && mean > much_skew)
         warn(region.name,
              fmt::format("skewed hex8, opposite edges turned by {:.2g} rad (mean): in bending about {:.0f} % too stiff with two cells "

@@ -205,8 +205,8 @@ TEST(Bending, ThickTubeConvergesWithTheFourthPower) {
 // Truth: what the warnings say of these beams is what they do; regular ones are not warned of.
 TEST(Bending, SkewedAndLinearCellsAreToldByRegion) {
   const Vec3 size(10, 1, 1);
-  const auto talk_of = [&](Shape shape, double moved) {
-    BlockOptions o{.shape = shape, .n = {10, 2, 2}, .high = size};
+  const auto talk_of = [&](Shape shape, double moved, const std::string& kind = "stvk", int n = 2) {
+    BlockOptions o{.shape = shape, .n = {10, n, n}, .high = size};
     o.map = [=](const Vec3& x) {
       Vec3 y = x;
       const int at[3] = {static_cast<int>(std::lround(x[0])), static_cast<int>(std::lround(2 * x[1])),
@@ -217,7 +217,7 @@ TEST(Bending, SkewedAndLinearCellsAreToldByRegion) {
     };
     Mesh m = block_mesh(o);
     add_node_set(m, "tip", [&](const Vec3& x) { return std::abs(x[0] - size[0]) < 1e-9; });
-    SceneCase c(block_of(1e7, 0.3, held("xmin") + force("end", "xmax", {0, 0, 1e-3}) + probe("tip")));
+    SceneCase c(block_of(1e7, 0.3, held("xmin") + force("end", "xmax", {0, 0, 1e-3}) + probe("tip"), kind));
     c.use(m);
     const Ran ran = c.solve();
     const Results r = c.results();
@@ -229,6 +229,11 @@ TEST(Bending, SkewedAndLinearCellsAreToldByRegion) {
   EXPECT_NE(skewed.find("block: skewed hex8"), std::string::npos) << skewed;
   const double said = std::stod(skewed.substr(skewed.find("about") + 5)) / 100;
   EXPECT_NEAR(1 / tip - 1, said, 0.05) << "the warning's own figure";
+  for (const int n : {2, 4}) {
+    const auto [plastic, bent] = talk_of(Shape::hex8, 0, "j2\"\nyield = 1e15 #", n);
+    EXPECT_NE(plastic.find("block: plastic hex8"), std::string::npos) << plastic;
+    EXPECT_NEAR(1 / bent - 1, std::stod(plastic.substr(plastic.find("shortest, is") + 12)) / 100 * 4 / (n * n), 0.07) << n << plastic;
+  }
   EXPECT_EQ(talk_of(Shape::hex20r, 0.2).first.find("block:"), std::string::npos);
   EXPECT_NEAR(talk_of(Shape::hex20r, 0.2).second, 1, 0.01);
   EXPECT_NE(talk_of(Shape::wedge6, 0).first.find("block: linear wedges lock"), std::string::npos);
