@@ -196,6 +196,9 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
     const Projected mine = plane.project(f, X);
     const Polygon own = mine.polygon();
     const double own_area = area_of(own);
+    double farthest = 0;  // from the origin, whose round-off lets facets overlap that share an edge
+    for (int a = 0; a < f.n; ++a) farthest = std::max(farthest, X[f.node[a]].cwiseAbs().maxCoeff());
+    const double least = 1e-14 * own_area + 1e-14 * farthest * size;
     area += own_area;
     const auto over = [&](const Polygon& polygon, const Rule& rule, auto&& use) {  // triangles, squares with one side shrunk to a point
       for (size_t k = 1; k + 1 < polygon.size(); ++k) {
@@ -220,7 +223,7 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
       if (!mine_box.meets(box[m], reach) || normal[m].dot(plane.n) > facing) continue;
       const Projected theirs = plane.project(master[m], X);
       const Polygon piece = clip(own, theirs.polygon());
-      if (piece.size() < 3 || area_of(piece) < 1e-14 * own_area) continue;
+      if (piece.size() < 3 || area_of(piece) < least) continue;
       std::vector<Point> points;
       double widest = 0, ahead = 0;
       over(piece, f.n == 3 && master[m].n == 3 ? coarse : fine, [&](const Vec2& p, double w) {
@@ -231,6 +234,7 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
         widest = std::max(widest, std::abs(g)), ahead = std::max(ahead, g);
       });
       if (widest > limit) {
+        if (area_of(piece) < share_tied * own_area) continue;                              // side by side but for the digits of a file
         const double off = ahead > limit ? ahead : widest < size / 2 ? widest : HUGE_VAL;  // a deeper one is another layer
         for (int a = 0; a < f.n; ++a)
           if (Sum& s = sums[f.node[a]]; off < s.open) s.open = off, s.limit = limit;

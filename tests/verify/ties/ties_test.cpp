@@ -269,6 +269,24 @@ TEST(Ties, ThatCannotBeAreRefused) {
   expect_refused(twice, {}, "Bzmin", "faces \"Azmax\" in two layers");
 }
 
+// Truth: two plates edge to edge, tied by their regions, touch.  Their faces above and below share nothing but an edge, wherever they lie.
+TEST(Ties, PlatesEdgeToEdgeTouch) {
+  for (const Vec3& place : {Vec3(0, 0, 0), Vec3(10, -3, 2), Vec3(-1000, 700, 300)}) {
+    for (const double digits : {0.0, 1e-8}) {
+      const auto there = [&](const Vec3& x) { return Vec3(Eigen::AngleAxisd(0.7, Vec3(1, 2, 0.5).normalized()) * x + place); };
+      SceneCase c(solid(2e11, 0, 8000) + tie("A", "B") + held("Axmin") + "[time]\nanalysis = \"modes\"\nmodes = 1\n");
+      c.use(together(block_mesh({.shape = Shape::hex8, .n = {6, 3, 1}, .high = {0.15, 0.06, 0.004}, .map = there, .regions = {"A"}}),
+                     block_mesh({.shape = Shape::hex8,
+                                 .n = {8, 5, 1},
+                                 .low = {0.15 - digits, 0, 0},
+                                 .high = {0.3, 0.06, 0.004},
+                                 .map = there,
+                                 .regions = {"B"}})));
+      expect_end(c.solve(), 0, "");
+    }
+  }
+}
+
 // Truth: a strip that stands edge-on on facets fifteen times as wide turns about the nodes in its middle; one that the block follows rings
 // at a twentieth of a steel cantilever's frequency or more.
 TEST(Ties, AHingeIsTold) {
