@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/newton.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -320,7 +322,14 @@ NewtonReport Newton::take() {
         }
       }
     }
-    if (it == options_.max_iterations * (1 + revisions_)) return fail("no convergence within the iterations allowed");
+    if (it == options_.max_iterations * (1 + revisions_)) {
+      report_.is_round_off = report_.correction < 1e-8 && report_.residual < 1e-6;
+      return fail(report_.is_round_off
+                      ? fmt::format("round-off of positions leaves a residual of {:.1e} of the forces, more than the tolerance of {:.0e}; "
+                                    "loosen solver.tolerance, or move the scene nearer to the origin",
+                                    report_.residual, options_.tolerance)
+                      : "no convergence within the iterations allowed");
+    }
     evaluate(true);
     if (moved && !damped_ && !is_sound()) {  // the last correction went farther than anyone foresaw: back, and damped from there
       move_along(-1);

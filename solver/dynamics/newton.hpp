@@ -28,9 +28,10 @@ struct NewtonReport {
   double residual = 0;    // last one, over the force scale
   LeastDet least_det;
   int linear_iterations = 0;
-  double left = 0;           // work of the residual over the increments of the unknown from where it began [J]
-  std::vector<double> gaps;  // of the constraint rows, laid out like lambda; none: closed to rounding
-  std::string reason;        // why it failed
+  double left = 0;            // work of the residual over the increments of the unknown from where it began [J]
+  std::vector<double> gaps;   // of the constraint rows, laid out like lambda; none: closed to rounding
+  std::string reason;         // why it failed
+  bool is_round_off = false;  // and that round-off of positions alone is left
 };
 
 /// Solve for the unknown and lambda from the guesses given.  `stage` makes the stage of an unknown; `guess`: where the first guess is a

@@ -71,7 +71,7 @@ class StaticSteps final : public Steps {
         const bool free = at_.done == 0 && touching(system) && !unheld(system, system.start).empty();  // it comes to rest soon, or hardly
         if (ends_ || at_.step <= std::ldexp(1.0 / n_, -(free ? 2 : run_.max_cuts))) {
           if (at_.least.det < 0.01 && r.least_det.det > 0) why += "; " + system.inside_out(at_.least);
-          if (r.least_det.det > 0)
+          if (r.least_det.det > 0 && !r.is_round_off)
             why += !touching(system) && at_.done == 0 && !rests_unloaded()
                        ? "; springs or motors push without the loads where the scene is drawn: analysis = \"dynamic\" or \"modes\" with "
                          "time.start = \"equilibrium\" finds its rest"
