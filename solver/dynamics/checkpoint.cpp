@@ -236,7 +236,7 @@ void require_same(const Checkpoint& from, const Scene& scene, const std::string&
   const auto had = things(was), has = things(is);
   for (const auto& [one, other, what] : {std::tuple(&had, &has, "is not there, and was"), std::tuple(&has, &had, "is there, and was not")})
     for (const std::string& thing : *one)
-      if (accept && !other->contains(thing))
+      if (!other->contains(thing))
         throw Error(scene.path, fmt::format("{} {} when the run was kept: what belongs to it cannot be taken over", thing, what),
                     "run the scene from its start");
   const bool in_time = value(is, "time.analysis") == "\"dynamic\"";
@@ -244,7 +244,7 @@ void require_same(const Checkpoint& from, const Scene& scene, const std::string&
   keys.insert(is.begin(), is.end());
   for (const auto& [key, ignored] : keys) {
     const std::string a = value(was, key), b = value(is, key);
-    if (a != b && accept && shapes_what_is_kept(key))
+    if (a != b && shapes_what_is_kept(key))
       throw Error(scene.path, fmt::format("{} is {}, and was {} when the run was kept, which does not fit it", key, shown(b), shown(a)),
                   "run the scene from its start");
     if (a == b || may_differ(key, a, b, from.t, in_time)) continue;

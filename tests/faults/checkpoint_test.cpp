@@ -192,7 +192,9 @@ TEST_F(Stopped, WhatDiffersIsRefusedByTheKey) {
   }
   work.write("scene.toml", pendulum);
   for (const char* other : {"time.error_estimate=\"never\"", "time.integrator=\"bdf2\"", "output.precision=\"single\""})
-    expect_end(work.run(go_on + "--accept --set time.end=0.7 --set '" + other + "'"), input, "which does not fit it");
+    for (const char* how : {"--accept ", ""})
+      expect_end(work.run(go_on + how + "--set time.end=0.7 --set '" + other + "'"), input,
+                 "which does not fit it (run the scene from its start)");
 }
 
 TEST_F(Stopped, ADamagedCheckpointIsPassedOverForTheOneBefore) {
