@@ -57,8 +57,8 @@ TEST_F(Motions, OfASetOfABarThatMovesAlongLeaveItWithoutStress) {
         const Results r(*this / "run.h5");
         // round-off of positions of 1 m in cells of 2e11 Pa
         EXPECT_LT(r.table("/field/" + r.steps().back() + "/von_mises").maxCoeff(), 0.05);
-        // gauss solves for accelerations from the forces there: 0.05 Pa on half a cell of 0.1 m are 1.3e-4 m/s^2
-        EXPECT_LT(r.peak("probe/tip", 6, 3), kind == "gauss" ? 3e-4 : 1e-4);
+        // gauss solves for accelerations from the forces there: 0.05 Pa on half a cell of 0.1 m are 1.3e-4 m/s^2, at each of its stages
+        EXPECT_LT(r.peak("probe/tip", 6, 3), kind == "gauss" ? 1e-3 : 1e-4);
         EXPECT_NEAR(r.history("probe/root").col(3).minCoeff(), 1, 1e-14);
         EXPECT_LT(reported("energy_balance"), 1e-10);
       }
