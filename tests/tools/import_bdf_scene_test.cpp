@@ -253,13 +253,12 @@ TEST_F(ImportBdfScene, WhatIsLeftOutIsToldByNameAndNumber) {
           "CELAS2,80,1.,17,4\nCELAS2,81,1.,17,1,18,2\nCELAS2,82,-1.,17,1\nGRID,100,,9.,9.,9.\nFORCE,2,100,,1.,1.,0.,0.\n"
           "RBE3,60,,17,123,1.,123,18,19\nRBE2,61,1,12,2,3,4\n");
   imported("a.bdf", "--scene-out s.toml");
-  for (const char* what :
-       {"SUBCASE after the first (1, a.bdf:9)", "case control TEMPERATURE (1, a.bdf:5)",
-        "FORCE of a set that the subcase does not use (2,", "MOMENT on a node of solids, which does not turn (1,", "TEMP (1,",
-        "MPC of a set that the subcase does not use (1,", "SPC of a set that the subcase does not use (1,",
-        "PLOAD4 that varies over the face (1,", "CELAS2 on the rotation of a node of solids, which does not turn (1,",
-        "CELAS2 between different components (1,", "CELAS2 below zero (1,", "FORCE on a grid of no element (1,",
-        "RBE3 whose grid is a node of a cell (1,", "RBE2 of some components of nodes of solids (1,"}) {
+  for (const char* what : {"SUBCASE after the first (1, a.bdf:9)", "case control TEMPERATURE (1, a.bdf:5)",
+                           "FORCE of a set that the subcase does not use (2,", "MOMENT on a node of solids, which does not turn (1,",
+                           "TEMP (1,", "MPC of a set that the subcase does not use (1,", "SPC of a set that the subcase does not use (1,",
+                           "PLOAD4 that varies over the face (1,", "CELAS2 on the rotation of a node of solids, which does not turn (1,",
+                           "CELAS2 between different components (1,", "CELAS2 below zero (1,", "FORCE on a grid of no element (1,",
+                           "RBE3 whose grid is a node of a cell (1,", "RBE2 of some components of nodes of solids (1,"}) {
     expect_said(std::string("not read: ") + what);
     const std::string card = std::string(what).substr(0, std::string(what).rfind(" ("));
     const bool taken = card.find("does not use") == std::string::npos;  // else nothing is lost

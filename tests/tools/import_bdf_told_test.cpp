@@ -49,8 +49,7 @@ TEST_F(ImportBdfTold, CaseControlThatNamesNoSetTakesNone) {
   for (const char* control : {"METHOD = 4\n", "DISP = ALL\n", "SUBCASE 1\nLABEL = x\nSUBCASE 2\nLOAD = 2\nSPC = 1\n"}) {
     const Scene s = scene(fmt::format("SOL 103\nCEND\n{}BEGIN BULK\n", control) + cube + foot + force + "EIGRL,4,,,10\n");
     EXPECT_TRUE(s.entries("motion").empty() && s.entries("load").empty()) << control;
-    for (const char* card : {"SPC", "FORCE"})
-      expect_said(fmt::format("not read: {} of a set that the subcase does not use (1,", card));
+    for (const char* card : {"SPC", "FORCE"}) expect_said(fmt::format("not read: {} of a set that the subcase does not use (1,", card));
   }
 }
 
