@@ -312,8 +312,7 @@ std::vector<KindSchema> make_schema() {
         {"value", numbers, "", "", "values, in the unit of what the history scales (1 for a factor)"},
         {"file", text, "", "",
          "CSV file with a header line and two columns: t (or time) and a value, in this order where none is named so.  A unit of time in "
-         "the "
-         "header (t [ms]) is converted; one of values must be that of what it scales in units of the scene, or stand beside `scale`"},
+         "the header (t [ms]) is converted; one of values must be that of what it scales in units of the scene, or stand beside `scale`"},
         {"scale", number, "1", "1", "factor on the values"},
         {"interpolation", text, "", "linear",
          "linear; smooth (cosine ramps) or smoother (ramps with three continuous derivatives), which stand still at every point and "
