@@ -34,7 +34,6 @@ void reduce(int argc, char** argv, const Comm& comm) {
   app->add_option("-o,--output", output, "file of modes; regions in it that nothing has changed of are kept")->capture_default_str();
   app->add_option("--shapes", shapes, "also a run.h5 whose instants are the modes, for hilo-post render and movie")->type_name("FILE");
   app->add_option("--memory", memory, "gigabytes for the factor of a region; without it, what is free besides its modes")
-      ->type_name("GB")
       ->check(CLI::NonNegativeNumber);
   app->add_option("--scratch", scratch, "folder where a factor that is too large for memory is kept in a file, while it is needed")
       ->type_name("FOLDER")

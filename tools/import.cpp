@@ -162,11 +162,9 @@ int main(int argc, char** argv) {
                                         "system of the file's numbers, all converted to SI: m-kg-s, mm-t-s, mm-kg-ms, in-lbf-s, ft-lbf-s")
                             ->type_name("SYSTEM");
     app->add_option("--scale", o.scale,
-                    "factor on the geometry and on displacements that a deck prescribes; STEP and IGES say their unit of length")
-        ->type_name("S");
+                    "factor on the geometry and on displacements that a deck prescribes; STEP and IGES say their unit of length");
     app->add_option("--order", o.order, "2: quadratic cells (linear ones get nodes in the middle of their edges)")->type_name("N");
-    app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")
-        ->type_name("H");
+    app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file");
     app->add_option("--thickness", r.thickness,
                     "surfaces become solid-shells of this thickness about them, in the unit of the file (geo, CAD, msh, unv, med, exo); "
                     "NAME=T: one group of "
@@ -204,7 +202,7 @@ int main(int argc, char** argv) {
                     "may be repeated: rail=tube:diameter=60,thickness=3")
         ->type_name("GROUP=KIND:KEY=VALUE,...")
         ->allow_extra_args(false);
-    app->add_option("--merge-nodes", o.merge, "nodes nearer than this become one, in the unit of the file")->type_name("TOL");
+    app->add_option("--merge-nodes", o.merge, "nodes nearer than this become one, in the unit of the file");
     app->add_option("--regions", o.regions, "element sets that become regions, before what the file says")
         ->delimiter(',')
         ->type_name("SET,...")

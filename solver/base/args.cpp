@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 
 #include "base/error.hpp"
@@ -81,6 +82,16 @@ std::vector<std::string> left_over(const CLI::App& app) {
     throw Error("", fmt::format("unexpected argument {}", word), help, Exit::usage);
   }
   throw Error("", in_words(error), help, Exit::usage);
+}
+
+/// CLI11 takes nan, inf and 1e400 as numbers, and nan as positive.
+void refuse_endless(const CLI::App& app, const std::string& help) {
+  for (const CLI::Option* o : app.get_options())
+    if (o->get_type_name().starts_with("FLOAT"))
+      for (const std::string& given : o->results())
+        if (!std::isfinite(std::strtod(given.c_str(), nullptr)))
+          throw Error("", fmt::format("{}: {} is not a finite number", o->get_name(), given), help, Exit::usage);
+  for (const CLI::App* s : app.get_subcommands()) refuse_endless(*s, help);
 }
 
 std::string roff(const std::string& text) {
@@ -180,6 +191,7 @@ bool parse(CLI::App& app, int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     wrong_usage(app, error);
   }
+  refuse_endless(app, fmt::format("see {} --help", app.get_name()));
   return true;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/args.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
@@ -49,6 +50,12 @@ TEST(Args, NumbersMayBeNegativeAndOptionsMayFollowTheSubcommand) {
   EXPECT_EQ(tool.depth, -0.5);
   EXPECT_EQ(tool.blade, 7);
   EXPECT_EQ(tool.log, "log.h5");
+}
+
+TEST(Args, NumbersAreFinite) {
+  for (const char* depth : {"nan", "-inf", "1e400"})
+    EXPECT_EQ(Tool().error({"cut", "log.h5", "--depth", depth}).what(),
+              fmt::format("--depth: {} is not a finite number (see hilo-saw --help)", depth));
 }
 
 TEST(Args, MistypedWordsAreUsageErrorsWithTheNearestName) {
