@@ -75,7 +75,7 @@ ArcStrain arc_rate(const arc::Measures<double>& e, const arc::Measures<double>& 
   return x;
 }
 
-arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const std::array<Mat6, 4>& C) {
+arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const std::array<Mat6, 4>& C, const TwistedFibres& fibres) {
   const ArcStrain at_length_one = arc_strain(e);
   const double L = at_length_one.head<3>().norm();
   const ArcStrain reference = at_length_one / L;
@@ -90,14 +90,27 @@ arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const st
   const Mat6 stiff = compliance.inverse();
   arc::ArcStiffness<double> out;
   Eigen::Map<Matrix>(&out.C[0][0]) = 0.5 * (stiff + stiff.transpose());
-  Eigen::Map<ArcStrain>(out.reference) = reference;
+  std::copy_n(fibres.counts_as.data(), 3, out.by_twist);
+  out.fibres = fibres.known ? 1 : 0, out.warp = fibres.stiffness;
+  arc::fibre_strain(out, reference.data(), out.reference);
   out.length = L;
   return out;
 }
 
+Mat6 arc_tangent(const arc::ArcStiffness<double>& of, const ArcStrain& x) {
+  const ArcStrain strain = x / of.length;
+  double A[6][6] = {}, none[7] = {};
+  arc::add_fibre_slopes(of, strain.data(), strain.data(), arc::fibre_slopes(of, strain.data()), none, 1., 0., A);
+  return Eigen::Map<const Matrix>(&A[0][0]);
+}
+
 double arc_energy(const arc::ArcStiffness<double>& of, const ArcStrain& x) {
-  const ArcStrain strain = x / of.length - Eigen::Map<const ArcStrain>(of.reference);
-  return of.length / 2 * strain.dot(matrix_of(of) * strain);
+  using Fibres = Eigen::Matrix<double, 7, 1>;
+  const ArcStrain strain = x / of.length;
+  Fibres h;
+  arc::fibre_strain(of, strain.data(), h.data());
+  h -= Eigen::Map<const Fibres>(of.reference);
+  return of.length / 2 * (h.head<6>().dot(matrix_of(of) * h.head<6>()) + of.warp * h[6] * h[6]);
 }
 
 double arc_taken(const arc::ArcStiffness<double>& of, const ArcStrain& x0, const ArcStrain& x1, const ArcStrain& recalled) {

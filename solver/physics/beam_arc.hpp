@@ -4,10 +4,12 @@
 // Measures of degree two (i j k cyclic), of sections A and B with origin c and directors d1 d2 across, d3 along:
 //   a_i = (d_kA.d_jB - d_jA.d_kB)/2,   t = sum d_iA.d_iB,   p_i = d_iA.(c_B - c_A)
 // With c = (t - 1)/2 = cos(th), f = th/sin(th) and k = (1 - f (1 + c)/2)/(1 - c^2) the strains are the logarithm of the relative motion,
-//   K = f a / L,   Gamma = (p - f/2 a x p + k a x (a x p)) / L,   W = L/2 (eps - eps_ref) C* (eps - eps_ref),   eps = (Gamma, K)
-// exact where they are constant.  C* = (mean of (1 - s Z)^T C(s)^-1 (1 - s Z))^-1, s from the middle, has the compliance of resultants that
-// vary along the element, (n, m)' = -Z (n, m) with Z = [K0x 0; e3x K0x], and of a section that does.  The forces s = L D^T C* (mean eps -
-// eps_ref), D (e1 - e0) = eps1 - eps0 to round-off, keep energy and momenta.
+//   K = f a / L,   Gamma = (p - f/2 a x p + k a x (a x p)) / L,   eps = (Gamma, K)
+// exact where they are constant.  Fibres along the beam have strains h of second degree in eps (`fibre_strain`), and W = L/2 (h - h_ref)
+// C* (h - h_ref): axial forces resist or drive a twist, as do moments of sections without symmetry.  C* = (mean of (1 - s Z)^T C(s)^-1 (1 -
+// s Z))^-1, s from the middle, has the compliance of resultants that vary along the element, (n, m)' = -Z (n, m) with Z = [K0x 0; e3x K0x],
+// and of a section that does.  The forces s = L D^T H^T C* (mean h - h_ref), D (e1 - e0) = eps1 - eps0 and H (eps1 - eps0) = h1 - h0 to
+// round-off, keep energy and momenta.
 #pragma once
 #include <array>
 
@@ -29,9 +31,18 @@ inline constexpr std::array<AlongArc, 4> along_arc{{{0.0694318442029737, 0.17392
                                                     {0.3300094782075719, 0.3260725774312731},
                                                     {0.6699905217924281, 0.3260725774312731},
                                                     {0.9305681557970263, 0.1739274225687269}}};
+/// What half the square of a twist does to fibres that it inclines: the stretch and the bending about 1 and 2 that it counts as [m^2, m],
+/// and what it meets beside these [N m^4].
+struct TwistedFibres {
+  bool known = false;  // otherwise nothing is inclined
+  Vec3 counts_as = Vec3::Zero();
+  double stiffness = 0;
+};
 /// Without strain at the measures e.  C at the places along the element (6 x 6) [N, N m, N m^2] by shear along 1 and 2, stretch, bending
 /// about 1 and 2, twist.
-arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const std::array<Mat6, 4>& C);
+arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const std::array<Mat6, 4>& C, const TwistedFibres& fibres);
+/// Slopes of forces and moments by the strains, where nothing is stressed: C*, with what a twist as drawn adds (6 x 6).
+Mat6 arc_tangent(const arc::ArcStiffness<double>& of, const ArcStrain& x);
 /// Of L times the strains [J].
 double arc_energy(const arc::ArcStiffness<double>& of, const ArcStrain& x);
 /// What C* (eps1 - eps0 - recalled/L) takes, of L times the strains [J]; without what is recalled it never pays in.

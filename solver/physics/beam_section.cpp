@@ -17,9 +17,19 @@ using std::numbers::pi;
 
 double cubed(double x) { return x * x * x; }
 
+/// Adds what a rectangle b x h with its middle at (x, y) has of r^2 X1, r^2 X2 and r^4.
+void add_higher(double x, double y, double b, double h, SectionArea& out, double sign = 1) {
+  const double A = sign * b * h, bb = b * b, hh = h * h, x2 = x * x + bb / 12, y2 = y * y + hh / 12;  // means of powers
+  const double x3 = x * (x * x + bb / 4), y3 = y * (y * y + hh / 4);
+  const double x4 = x * x * (x * x + bb / 2) + bb * bb / 80, y4 = y * y * (y * y + hh / 2) + hh * hh / 80;
+  out.H1 += A * (x3 + x * y2), out.H2 += A * (y3 + y * x2), out.I4 += A * (x4 + 2 * x2 * y2 + y4);
+}
+
 SectionArea circle(const EntryValues& e, double nu) {
   const double r = e.number("diameter") / 2, I = pi * r * r * r * r / 4, k = 6 * (1 + nu) / (7 + 6 * nu);
-  return {pi * r * r, I, I, 2 * I, k, k};
+  SectionArea out{pi * r * r, I, I, 2 * I, k, k};
+  out.I4 = pi * std::pow(r, 6) / 3;
+  return out;
 }
 
 SectionArea tube(const EntryValues& e, double nu) {
@@ -27,12 +37,16 @@ SectionArea tube(const EntryValues& e, double nu) {
   if (ri < 0) e.refuse("thickness", "the wall is thicker than half the diameter");
   const double I = pi * (std::pow(ro, 4) - std::pow(ri, 4)) / 4, m2 = ri * ri / (ro * ro), one = (1 + m2) * (1 + m2);
   const double k = 6 * (1 + nu) * one / ((7 + 6 * nu) * one + (20 + 12 * nu) * m2);
-  return {pi * (ro * ro - ri * ri), I, I, 2 * I, k, k};
+  SectionArea out{pi * (ro * ro - ri * ri), I, I, 2 * I, k, k};
+  out.I4 = pi * (std::pow(ro, 6) - std::pow(ri, 6)) / 3;
+  return out;
 }
 
 SectionArea rectangle(const EntryValues& e, double nu) {
   const double b = e.number("width"), h = e.number("height"), k = 10 * (1 + nu) / (12 + 11 * nu);
-  return {b * h, b * cubed(h) / 12, h * cubed(b) / 12, torsion_of_rectangle(b, h), k, k};
+  SectionArea out{b * h, b * cubed(h) / 12, h * cubed(b) / 12, torsion_of_rectangle(b, h), k, k};
+  add_higher(0, 0, b, h, out);
+  return out;
 }
 
 /// Shear along the webs of a thin-walled box or, of two half webs, of an I: b, h between the middles of the walls.
@@ -50,12 +64,14 @@ SectionArea box(const EntryValues& e, double nu) {
     const double m = across / along;
     return shear_of_webs(nu, m, m, 10 * ((3 + nu) * m + 3 * m * m));
   };
-  return {b * h - bi * hi,
-          (b * cubed(h) - bi * cubed(hi)) / 12,
-          (h * cubed(b) - hi * cubed(bi)) / 12,
-          2 * t * bm * bm * hm * hm / (bm + hm),
-          shear(hm, bm),
-          shear(bm, hm)};
+  SectionArea out{b * h - bi * hi,
+                  (b * cubed(h) - bi * cubed(hi)) / 12,
+                  (h * cubed(b) - hi * cubed(bi)) / 12,
+                  2 * t * bm * bm * hm * hm / (bm + hm),
+                  shear(hm, bm),
+                  shear(bm, hm)};
+  add_higher(0, 0, b, h, out), add_higher(0, 0, bi, hi, out, -1);
+  return out;
 }
 
 SectionArea double_tee(const EntryValues& e, double nu) {
@@ -64,12 +80,15 @@ SectionArea double_tee(const EntryValues& e, double nu) {
   if (tw > b) e.refuse("web", "the web is thicker than the width");
   const double hi = h - 2 * tf, hm = h - tf, A = 2 * b * tf + hi * tw, m = 2 * b * tf / (hm * tw), n = b / hm;
   const double along_web = shear_of_webs(nu, m, n, 30 * (m + m * m) + 5 * nu * (8 * m + 9 * m * m));
-  return {A,
-          (b * cubed(h) - (b - tw) * cubed(hi)) / 12,
-          (2 * tf * cubed(b) + hi * cubed(tw)) / 12,
-          2 * torsion_of_rectangle(b, tf) + torsion_of_rectangle(hi, tw),
-          5.0 / 6 * 2 * b * tf / A,
-          along_web};
+  SectionArea out{A,
+                  (b * cubed(h) - (b - tw) * cubed(hi)) / 12,
+                  (2 * tf * cubed(b) + hi * cubed(tw)) / 12,
+                  2 * torsion_of_rectangle(b, tf) + torsion_of_rectangle(hi, tw),
+                  5.0 / 6 * 2 * b * tf / A,
+                  along_web};
+  for (const double y : {-hm / 2, hm / 2}) add_higher(0, y, b, tf, out);
+  add_higher(0, 0, tw, hi, out);
+  return out;
 }
 
 /// An open section of rectangles, about its centre of area, and of the middles of its walls.
@@ -81,6 +100,7 @@ SectionArea area_of(const OpenShape& shape) {
     out.A += A;
     out.I1 += A * (p.h * p.h / 12 + dy * dy), out.I2 += A * (p.b * p.b / 12 + dx * dx), out.I12 += A * dx * dy;
     out.J += torsion_of_rectangle(p.b, p.h);
+    add_higher(dx, dy, p.b, p.h, out);
   }
   const OpenWalls thin = open_walls(shape.walls);
   out.s1 = thin.shear_centre[0], out.s2 = thin.shear_centre[1];
@@ -189,6 +209,7 @@ BeamSection section_of_area(const EntryValues& entry, SectionArea a, double E, d
   out.C(5, 5) += coupled.dot(twist);
   out.mass = density * a.A, out.J11 = density * a.I2, out.J22 = density * a.I1, out.J12 = density * a.I12;
   out.size = std::sqrt((a.I1 + a.I2) / a.A);
+  out.has_fibres = true, out.H1 = E * a.H1, out.H2 = E * a.H2, out.I4 = E * a.I4;
   return out;
 }
 

@@ -24,6 +24,8 @@ struct SectionArea {
   double shear_12 = 0;              // what couples them, over G A
   double I12 = 0;                   // int X1 X2 [m^4]
   double s1 = 0, s2 = 0;            // shear centre, from the centre of area [m]
+  double H1 = 0, H2 = 0;            // int X1 r^2, int X2 r^2 [m^5]
+  double I4 = 0;                    // int r^4 [m^6]; 0: not known
 };
 
 struct BeamSection {
@@ -31,6 +33,8 @@ struct BeamSection {
   double mass = 0;                                // [kg/m]
   double J11 = 0, J22 = 0, J12 = 0;               // int rho X1^2, X2^2, X1 X2 [kg m]
   double size = 0;                                // a length of the section, as its radius of gyration [m]
+  double H1 = 0, H2 = 0, I4 = 0;                  // int E X1 r^2, int E X2 r^2 [N m^3], int E r^4 [N m^4], about the origin
+  bool has_fibres = false;                        // made of an area
 };
 
 /// The face of a section: points with what stress they take, and cells between them for pictures.

@@ -173,11 +173,36 @@ template <class T>
   e.strain(t.f1, t.k1, x);
 }
 
-/// What an element is made of: C* [N, N m, N m^2], its strains without stress [1, 1/m], its length [m].
+/// What an element is made of: C* [N, N m, N m^2]; 1, or 0 where nothing is known of fibres; what half the square of its twist counts as,
+/// stretch and bending about 1 and 2 [m^2, m], and stiffness against it beside these [N m^4]; its strains of fibres without stress
+/// [1, 1/m], its length [m].
 template <class T>
 struct ArcStiffness {
-  T C[n_strains][n_strains], reference[n_strains], length;
+  T C[n_strains][n_strains], fibres, by_twist[3], warp, reference[n_strains + 1], length;
 };
+
+/// The strains h of fibres along the beam, of second degree in those of the arc e, and half the square of the twist.  A fibre at (X1, X2)
+/// has the strain h2 + X2 h3 - X1 h4 where its way is (e0 - X2 e5, e1 + X1 e5, 1 + e2 + X2 e3 - X1 e4): that a twist inclines it counts too
+/// [wagner-1936].
+template <class T>
+[[gnu::always_inline]] inline void fibre_strain(const ArcStiffness<T>& law, const T* e, T* h) {
+  const T twist2 = 0.5 * (e[5] * e[5]);
+  h[0] = e[0], h[1] = e[1], h[5] = e[5], h[6] = twist2;
+  h[2] = e[2] + 0.5 * law.fibres * (e[0] * e[0] + e[1] * e[1]) + law.by_twist[0] * twist2;
+  for (int i = 0; i < 2; ++i) h[3 + i] = e[3 + i] - law.fibres * (e[i] * e[5]) + law.by_twist[1 + i] * twist2;
+}
+/// dh/de at e where it is not that of e itself: of h2, h3 and h4 by the twist.
+template <class T>
+[[gnu::always_inline]] inline LaneVector<T> fibre_slopes(const ArcStiffness<T>& law, const T* e) {
+  return {law.by_twist[0] * e[5], law.by_twist[1] * e[5] - law.fibres * e[0], law.by_twist[2] * e[5] - law.fibres * e[1]};
+}
+/// (dh/de)^T S at e: the forces and moments of the arc of those of its fibres.
+template <class T>
+[[gnu::always_inline]] inline void of_fibres(const ArcStiffness<T>& law, const LaneVector<T>& slopes, const T* e, const T* S, T* n) {
+  for (int i = 0; i < 2; ++i) n[i] = S[i] + law.fibres * (e[i] * S[2] - e[5] * S[3 + i]);
+  n[2] = S[2], n[3] = S[3], n[4] = S[4];
+  n[5] = S[5] + slopes[0] * S[2] + slopes[1] * S[3] + slopes[2] * S[4];
+}
 
 /// d (L Gamma)/d a and d (L Gamma)/d p of f, k, a, p, w.
 template <class T>
@@ -242,13 +267,33 @@ template <class T>
   for (int i = 0; i < n_strains; ++i) x[i] += more[i];
 }
 
+/// Adds (dh/de)^T C* dh/de1 share, at the mean strains e from the left and at those of the end from the right, and what S has of second
+/// derivatives, half_L times.
+template <class T>
+[[gnu::always_inline]] inline void add_fibre_slopes(const ArcStiffness<T>& law, const T* e, const T* e_end, const LaneVector<T>& left,
+                                                    const T* S, const T& share, const T& half_L, T (*A)[n_strains]) {
+  const LaneVector<T> right = fibre_slopes(law, e_end);
+  T by_e[n_strains][n_strains], column[n_strains], out[n_strains];
+  for (int i = 0; i < n_strains; ++i) of_fibres(law, right, e_end, law.C[i], by_e[i]);
+  for (int j = 0; j < n_strains; ++j) {
+    for (int i = 0; i < n_strains; ++i) column[i] = by_e[i][j];
+    of_fibres(law, left, e, column, out);
+    for (int i = 0; i < n_strains; ++i) A[i][j] += share * out[i];
+  }
+  A[5][5] += share * (law.warp * e[5] * e_end[5]);
+  const T of_fibre = half_L * law.fibres;
+  for (int i = 0; i < 2; ++i) A[i][i] += of_fibre * S[2], A[i][5] -= of_fibre * S[3 + i], A[5][i] -= of_fibre * S[3 + i];
+  A[5][5] += half_L * (law.by_twist[0] * S[2] + law.by_twist[1] * S[3] + law.by_twist[2] * S[4] + S[6]);
+}
+
 /// What an element has over a step: L times the strains at both ends, and the forces and moments.
 template <class T>
 struct Resultants {
   T x0[n_strains], x1[n_strains], n[n_strains];
 };
 
-/// The forces s and, where D is wanted, ds/de1, set: by the resultants C* (elastic (mean eps - reference) + rate (eps1 - eps0 - recalled)).
+/// The forces s and, where D is wanted, ds/de1, set: by the resultants (dh/deps)^T C* elastic (mean h - reference) + C* rate (eps1 -
+/// eps0 - recalled).
 /// `recalled`: L times strains; null: none.  `ahead`: L times strains that take the place of their mean; null: none.
 template <class T>
 [[gnu::always_inline]] inline void respond(const ArcStiffness<T>& law, const Measures<T>& m0, const Measures<T>& m1, double elastic,
@@ -256,15 +301,33 @@ template <class T>
   const End<T> e0(m0), e1(m1);
   const TurnFunctions<T> turn = turning(e0.c, e1.c);
   e0.strain(turn.f0, turn.k0, r.x0), e1.strain(turn.f1, turn.k1, r.x1);
-  const T by_L = 1 / law.length, half = (0.5 * elastic) * by_L, rate_L = rate * by_L;
-  T strain[n_strains];
+  const T by_L = 1 / law.length, rate_L = rate * by_L;
+  T change[n_strains];
+  for (int i = 0; i < n_strains; ++i) change[i] = rate_L * (r.x1[i] - r.x0[i] - (recalled ? recalled[i] : T{}));
   for (int i = 0; i < n_strains; ++i) {
-    strain[i] = half * (ahead ? 2. * ahead[i] : r.x0[i] + r.x1[i]) - elastic * law.reference[i] + rate_L * (r.x1[i] - r.x0[i]);
-    if (recalled) strain[i] -= rate_L * recalled[i];
+    r.n[i] = law.C[i][0] * change[0];
+    for (int j = 1; j < n_strains; ++j) r.n[i] += law.C[i][j] * change[j];
   }
-  for (int i = 0; i < n_strains; ++i) {
-    r.n[i] = law.C[i][0] * strain[0];
-    for (int j = 1; j < n_strains; ++j) r.n[i] += law.C[i][j] * strain[j];
+  T e[n_strains], e_end[n_strains], S[n_strains + 1];  // mean strains, those at the end; forces and moments of fibres
+  LaneVector<T> slopes;
+  if (elastic != 0) {
+    T h[n_strains + 1], h_end[n_strains + 1], elastic_n[n_strains];
+    for (int i = 0; i < n_strains; ++i) {
+      e[i] = (0.5 * by_L) * (r.x0[i] + r.x1[i]), e_end[i] = by_L * r.x1[i];
+      elastic_n[i] = by_L * (ahead ? ahead[i] : r.x0[i]);
+    }
+    fibre_strain(law, elastic_n, h);
+    if (!ahead) fibre_strain(law, e_end, h_end);
+    for (int i = 0; i <= n_strains; ++i) h[i] = elastic * ((ahead ? h[i] : 0.5 * (h[i] + h_end[i])) - law.reference[i]);
+    for (int i = 0; i < n_strains; ++i) {
+      S[i] = law.C[i][0] * h[0];
+      for (int j = 1; j < n_strains; ++j) S[i] += law.C[i][j] * h[j];
+    }
+    S[6] = law.warp * h[6];
+    slopes = fibre_slopes(law, e);
+    of_fibres(law, slopes, e, S, elastic_n);
+    elastic_n[5] += e[5] * S[6];
+    for (int i = 0; i < n_strains; ++i) r.n[i] += elastic_n[i];
   }
   const LaneVector<T> N{r.n[0], r.n[1], r.n[2]}, M{r.n[3], r.n[4], r.n[5]};
 
@@ -304,22 +367,24 @@ template <class T>
   Matrix<T> Ba, Bp, Ja, Jp;
   strain_slopes(f, k, a, p, w, Ba, Bp);
   strain_slopes(turn.f1, turn.k1, e1.a, e1.p, e1.w, Ja, Jp);
-  const T f1_t = 0.5 * turn.f1_c, k1_t = 0.5 * turn.k1_c, dk_half = 0.5 * turn.dk, df_half = 0.5 * turn.df, share = half + rate_L;
+  const T f1_t = 0.5 * turn.f1_c, k1_t = 0.5 * turn.k1_c, dk_half = 0.5 * turn.dk, df_half = 0.5 * turn.df;
   LaneVector<T> Bt, Jt;
   for (int i = 0; i < 3; ++i) {
     Bt[i] = dk_half * b[i] - 0.5 * (df_half * w[i]);
     Jt[i] = k1_t * e1.b[i] - 0.5 * (f1_t * e1.w[i]);
   }
+  T A[n_strains][n_strains];  // dn/dx1
+  for (int i = 0; i < n_strains; ++i)
+    for (int j = 0; j < n_strains; ++j) A[i][j] = rate_L * law.C[i][j];
+  if (elastic != 0) add_fibre_slopes(law, e, e_end, slopes, S, T((0.5 * elastic) * by_L), T(0.5 * by_L), A);
   T CJ[n_strains][n_measures];
   for (int i = 0; i < n_strains; ++i) {
-    const T* C = law.C[i];
-    const T c0 = share * C[0], c1 = share * C[1], c2 = share * C[2], c3 = share * C[3], c4 = share * C[4], c5 = share * C[5];
-    const T twist[3] = {c3, c4, c5};
+    const T* c = A[i];
     for (int j = 0; j < 3; ++j) {
-      CJ[i][j] = c0 * Ja.m[0][j] + c1 * Ja.m[1][j] + c2 * Ja.m[2][j] + turn.f1 * twist[j];
-      CJ[i][4 + j] = c0 * Jp.m[0][j] + c1 * Jp.m[1][j] + c2 * Jp.m[2][j];
+      CJ[i][j] = c[0] * Ja.m[0][j] + c[1] * Ja.m[1][j] + c[2] * Ja.m[2][j] + turn.f1 * c[3 + j];
+      CJ[i][4 + j] = c[0] * Jp.m[0][j] + c[1] * Jp.m[1][j] + c[2] * Jp.m[2][j];
     }
-    CJ[i][3] = c0 * Jt[0] + c1 * Jt[1] + c2 * Jt[2] + f1_t * (c3 * e1.a[0] + c4 * e1.a[1] + c5 * e1.a[2]);
+    CJ[i][3] = c[0] * Jt[0] + c[1] * Jt[1] + c[2] * Jt[2] + f1_t * (c[3] * e1.a[0] + c[4] * e1.a[1] + c[5] * e1.a[2]);
   }
   for (int j = 0; j < n_measures; ++j) {
     const T n0 = CJ[0][j], n1 = CJ[1][j], n2 = CJ[2][j];

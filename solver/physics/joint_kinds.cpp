@@ -199,7 +199,16 @@ constexpr Param cross_a{"axis", vector3, "1", "!",
 constexpr Param stiffness{
     "stiffness", numbers, "N/m", "", "makes the joint give way: along x, y and axis of its frame, or one number for all",
     at_least(0), {1, 3}},
-    damping{"damping", numbers, "N s/m", "", "dampers beside these springs", at_least(0), {1, 3}};
+    angular_stiffness{
+        "angular_stiffness",
+        numbers,
+        "N m/rad",
+        "",
+        "the same about x, y and axis: moment per angle; of three the rotation vector, to half a turn, of two the tilt of the axis",
+        at_least(0),
+        {1, 3}},
+    damping{"damping", numbers, "N s/m", "", "dampers beside these springs", at_least(0), {1, 3}},
+    angular_damping{"angular_damping", numbers, "N m s/rad", "", "dampers beside these springs", at_least(0), {1, 3}};
 
 }  // namespace
 
@@ -211,22 +220,17 @@ std::vector<Param> joint_keys(bool with_axis, std::initializer_list<Param> own) 
 }
 
 std::vector<Param> giving_way(std::vector<Param> keys) {
-  keys.insert(keys.end(),
-              {stiffness,
-               {"angular_stiffness",
-                numbers,
-                "N m/rad",
-                "",
-                "the same about x, y and axis: moment per angle; of three the rotation vector, to half a turn, of two the tilt of the axis",
-                at_least(0),
-                {1, 3}},
-               damping,
-               {"angular_damping", numbers, "N m s/rad", "", "dampers beside these springs", at_least(0), {1, 3}}});
+  keys.insert(keys.end(), {stiffness, angular_stiffness, damping, angular_damping});
   return keys;
 }
 
 std::vector<Param> giving_way_along(std::vector<Param> keys) {
   keys.insert(keys.end(), {stiffness, damping});
+  return keys;
+}
+
+std::vector<Param> giving_way_about(std::vector<Param> keys) {
+  keys.insert(keys.end(), {angular_stiffness, angular_damping});
   return keys;
 }
 
@@ -238,7 +242,7 @@ Registry<JointKind>& joint_kinds() {
         "joint",
         {
             {"fixed", "no relative motion (6 rows)", giving_way(joint_keys(false)), fixed, "xyzABC", {}, {}},
-            {"spherical", "common point (3 rows)", giving_way(joint_keys(false)), spherical, "xyz", {}, {0, 1, 2}, none},
+            {"spherical", "common point (3 rows)", giving_way_along(joint_keys(false)), spherical, "xyz", {}, {0, 1, 2}, none},
             {"revolute",
              "common point and axis: one rotation (5 rows)",
              giving_way(joint_keys(true, {angle_key, spin, drive_history})),
@@ -300,7 +304,7 @@ Registry<JointKind>& joint_kinds() {
              {}},
             {"in-plane",
              "a point of b stays in a plane of a with the normal `axis` (1 row)",
-             giving_way(joint_keys(true)),
+             giving_way_along(joint_keys(true)),
              in_plane,
              "z",
              {},
@@ -308,7 +312,7 @@ Registry<JointKind>& joint_kinds() {
              first},
             {"in-line",
              "a point of b stays on a line of a along `axis` (2 rows)",
-             giving_way(joint_keys(true)),
+             giving_way_along(joint_keys(true)),
              in_line,
              "xy",
              {slide},
@@ -316,7 +320,7 @@ Registry<JointKind>& joint_kinds() {
              first},
             {"gear",
              "angles of a and b about axes of a carrier stay in a ratio; bearings are joints of their own (1 row, a moment on b)",
-             giving_way(
+             giving_way_about(
                  joint_keys(true, {{"axis_b", vector3, "1", "", "axis of b where it differs from that of a"},
                                    {"ratio", number, "1", "!", "turns of b per turn of a; negative when they turn against each other"},
                                    third_end})),
@@ -328,10 +332,10 @@ Registry<JointKind>& joint_kinds() {
              read_gear},
             {"rack",
              "slide of b goes with the angle of a, the pinion; bearings and guides are joints of their own (1 row)",
-             giving_way(joint_keys(true, {{"direction", vector3, "1", "!",
-                                           "direction in the carrier along which b moves when a turns positively about `axis`"},
-                                          {"radius", number, "m", "!", "pitch radius: slide per angle", above(0)},
-                                          third_end})),
+             giving_way_along(joint_keys(true, {{"direction", vector3, "1", "!",
+                                                 "direction in the carrier along which b moves when a turns positively about `axis`"},
+                                                {"radius", number, "m", "!", "pitch radius: slide per angle", above(0)},
+                                                third_end})),
              rack,
              "z",
              {},
@@ -340,7 +344,7 @@ Registry<JointKind>& joint_kinds() {
              read_rack},
             {"point-on-curve",
              "a point of b stays on a smooth curve carried by a, a cubic spline through points (2 rows)",
-             giving_way(
+             giving_way_along(
                  joint_keys(false, {{"points", numbers, "m", "", "points of the curve, [[x, y, z], ...], reference coordinates"},
                                     {"file", text, "", "", "CSV file of the points instead: a header line and three columns x, y, z"},
                                     {"closed", boolean, "", "false",

@@ -141,6 +141,8 @@ SectionFace meshed_face(const SectionMesh& mesh, double nu) {
   for (Vector2d& x : X) x -= centre;
   each_spot(X, mesh.cells, [&](const Cell&, const Shapes&, const Spot& p) {
     area.I1 += p.area * p.x.y() * p.x.y(), area.I2 += p.area * p.x.x() * p.x.x(), area.I12 += p.area * p.x.x() * p.x.y();
+    const double r2 = p.x.squaredNorm();
+    area.H1 += p.area * p.x.x() * r2, area.H2 += p.area * p.x.y() * r2, area.I4 += p.area * r2 * r2;
   });
   // columns of u and f: torsion, forces along 1 and 2 by 1; a and b of these in columns
   const Matrix2d ab = (Matrix2d() << area.I2, area.I12, area.I12, area.I1).finished().inverse();

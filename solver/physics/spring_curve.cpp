@@ -43,6 +43,7 @@ struct CurveLaw final : SpringLaw {
     out.s[0] += s, out.D[0][0] += c / step.h, out.dissipated += s * (r1[0] - r0[0]);
   }
   bool conserves() const override { return c == 0; }
+  bool is_smooth() const override { return false; }  // at the points of its table
 };
 
 }  // namespace

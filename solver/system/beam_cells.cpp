@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/beam_cells.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 namespace hilo {
@@ -48,6 +49,18 @@ BeamCell::Shares shares_along(double L) {
   return out;
 }
 
+/// Fibres at r from the axis take half the square of r times a twist; r^2 over the section is what a stretch and bending make of it, and a
+/// rest that adds to the stiffness alone.
+TwistedFibres twisted_fibres(const BeamSection& s) {
+  if (!s.has_fibres) return {};
+  const Vec3 on_r2(s.C(3, 3) + s.C(4, 4), s.H2, -s.H1);
+  const Mat3 C = s.C.block<3, 3>(2, 2);
+  TwistedFibres out{.known = true};
+  out.counts_as = C.ldlt().solve(on_r2);
+  out.stiffness = std::max(0., s.I4 - on_r2.dot(out.counts_as));
+  return out;
+}
+
 }  // namespace
 
 BeamSection mean_section(const SectionsAlong& sections) {
@@ -56,6 +69,8 @@ BeamSection mean_section(const SectionsAlong& sections) {
     const double w = along_arc[k].weight;
     const BeamSection& s = sections[k];
     out.C += w * s.C, out.mass += w * s.mass, out.J11 += w * s.J11, out.J22 += w * s.J22, out.J12 += w * s.J12, out.size += w * s.size;
+    out.H1 += w * s.H1, out.H2 += w * s.H2, out.I4 += w * s.I4;
+    out.has_fibres = s.has_fibres;
   }
   return out;
 }
@@ -81,7 +96,7 @@ BeamCell beam_cell(const SectionPlace& a, const SectionPlace& b, const Config& q
   const BeamSection mean = mean_section(sections);
   std::array<Mat6, 4> C;
   for (size_t k = 0; k < C.size(); ++k) C[k] = sections[k].C;
-  cell.arc.law = arc_stiffness(arc::measures_of(points.y), C);
+  cell.arc.law = arc_stiffness(arc::measures_of(points.y), C, twisted_fibres(mean));
   cell.arc.alpha = alpha, cell.arc.beta = beta, cell.size = mean.size;
   set_linked_mass(sections, mean, cell.arc.law.length, cell.arc);
   cell.across = shares_across(mean, cell.arc.law.length), cell.along = shares_along(cell.arc.law.length);

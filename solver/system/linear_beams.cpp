@@ -49,8 +49,7 @@ Strains strains_of(const BeamCell& cell, const arc::SectionPoints<double>& at) {
     arc::strain_ahead(m, dm, x.data());
     slopes.col(c) = x - drawn;
   }
-  using Matrix = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-  return Eigen::Map<const Matrix>(&cell.arc.law.C[0][0]).llt().matrixU() * slopes / std::sqrt(cell.arc.law.length);
+  return arc_tangent(cell.arc.law, drawn).llt().matrixU() * slopes / std::sqrt(cell.arc.law.length);
 }
 
 /// Motions of sections of those of their nodes.

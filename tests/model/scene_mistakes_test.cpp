@@ -45,6 +45,13 @@ TEST_F(Mistake, UnknownKey) {
       "angular_stiffness, damping, angular_damping, reactions)");
 }
 
+// A spherical joint holds no turn on a spring.
+TEST_F(Mistake, ASpringWhereTheJointIsFree) {
+  const std::string found = refusal(
+      "[[joint]]\nkind = \"spherical\"\nname = \"ball\"\nb = \"barrel\"\nat = [0, 0, 0]\nstiffness = 1e5\nangular_stiffness = 200\n");
+  EXPECT_TRUE(found.find("unknown key \"angular_stiffness\"") != found.npos) << found;
+}
+
 // The tables that have the key are named where they are few: other sections, or other kinds of the same one.
 TEST_F(Mistake, KeyOfAnotherTable) {
   const std::string steel = "[material.steel]\nkind = \"stvk\"\nE = 2e11\nnu = 0.3\ndensity = 7800\n";

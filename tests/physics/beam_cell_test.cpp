@@ -63,7 +63,7 @@ struct Step {
     }
     Mat6 C = Mat6::Identity() * 3 + 0.2 * Mat6::Random();
     C = (C + C.transpose()).eval();
-    cell.law = arc_stiffness(measures(rest), {C, C, C, C});
+    cell.law = arc_stiffness(measures(rest), {C, C, C, C}, {seed % 2 == 0, vector(1), 0.4});
     Eigen::Matrix4d M = Eigen::Matrix4d::Random();
     M = (M + M.transpose()).eval();
     std::copy_n(M.data(), 16, &cell.linked[0][0]);

@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "dynamics/audit.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/start/start.hpp"
+#include "system/springs.hpp"
 
 namespace hilo {
 namespace {
@@ -55,7 +58,8 @@ void Companion::catch_up(const State& s, double added, ErrorEstimate& estimate) 
   if (!there)
     return estimate.lose(fmt::format("a step twice as long {} at t = {:.4g} s",
                                      turns_far_ ? fmt::format("turns a part by more than {:g} rad", turn_limit) : "fails", state_.t));
-  estimate.look(s.t, apart(system_, s.q, state_.q), apart(system_, s.q, start_), integrator_->order(), added);
+  const int order = springs_are_smooth(system_) ? integrator_->order() : std::min(integrator_->order(), 2);  // kinks leave no more
+  estimate.look(s.t, apart(system_, s.q, state_.q), apart(system_, s.q, start_), order, added);
 }
 
 void Companion::restart(const State& of_run, bool strikes, double jerk_step) {

@@ -138,7 +138,8 @@ TEST_F(BeamModes, ARingUnderPressureBucklesAsLevysDoes) {
 }
 
 // Argyris' frame of a strip, pulled and pushed in its plane until it turns out of it.  Published: 1.088 and 0.680 N.  1.0843 and 0.6791 N
-// are the limits of refinement, by a geometrically exact beam programmed apart from hilo (16 elements a leg; 2 4 8: 1.0944 1.0867 1.0848).
+// are the limits of refinement, by a geometrically exact beam programmed apart from hilo (16 elements a leg; 2 4 8: 1.0944 1.0867 1.0848),
+// without what the pull does to fibres that a twist inclines: 0.15 % more.
 TEST_F(BeamModes, AFrameOfAStripBucklesOutOfItsPlane) {
   const auto frame = [](double load, int cells = 8) {
     return "[section.s]\nkind = \"rectangle\"\nwidth = 30e-3\nheight = 0.6e-3\nshear = [0.8333333, 0.8333333]\n[material.m]\nE = "
@@ -146,9 +147,9 @@ TEST_F(BeamModes, AFrameOfAStripBucklesOutOfItsPlane) {
            beam_of("[[0, 0, 0], [0.24, 0, 0], [0.24, 0.24, 0]]", cells, "a = \"ground\"\nmaterial = \"m\"") +
            push("arm.end", Vec3(load, 0, 0)) + tip_probe();
   };
-  EXPECT_NEAR(critical([&](double load) { return frame(load); }, 1.06, 1.08), 1.0843, 1e-3 * 1.0843);
+  EXPECT_NEAR(critical([&](double load) { return frame(load); }, 1.06, 1.08), 1.0859, 1e-3 * 1.0859);
   EXPECT_NEAR(critical([&](double load) { return frame(-load); }, 0.665, 0.677), 0.6791, 1e-3 * 0.6791);
-  for (const double limit : {1.0843, -0.6791}) {
+  for (const double limit : {1.0859, -0.6791}) {
     const double parts = 1.27 * by_path(frame(1.27 * limit, 16), 12);
     std::printf("%.5f of %.4f N by path\n", parts, limit);
     EXPECT_NEAR(parts, 1, 1e-3);

@@ -112,5 +112,11 @@ TEST(CompliantJoint, MistakesAreNamed) {
   c.expect_mistake("joint.pin.spin=3", "cannot be driven");
 }
 
+// Before, these springs were taken and did nothing.
+TEST(CompliantJoint, SpringsThatWouldActOnNothingAreRefused) {
+  const Case c("compliant");
+  c.expect_mistake("'joint.pin.angular_stiffness=[1,1,1]'", "a joint of kind revolute is free about its axis");
+}
+
 }  // namespace
 }  // namespace hilo::test::compliant_test

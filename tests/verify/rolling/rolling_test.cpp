@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rolling and knife edges against closed forms, and against the equations of motion of a disc.
+#include "model/scene.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::rolling_test {
