@@ -87,13 +87,23 @@ Chain chain_of(const RunFile& run, const std::vector<std::string>& globs) {
   return chain;
 }
 
+/// The steps that --times asks for, of those that all beams have: a run in progress may be a row ahead in one array.
+std::vector<size_t> chosen_rows(const Chain& chain, const char* by_default, const std::string& times, const RunFile& run) {
+  const Series* shortest = nullptr;
+  for (const auto& [name, forces] : chain.forces)
+    if (!shortest || forces.rows() < shortest->rows()) shortest = &forces;
+  const auto n_rows = static_cast<std::ptrdiff_t>(shortest->rows());
+  return choose_instants({shortest->t.begin(), shortest->t.begin() + n_rows}, by_default, times, run.path, "step");
+}
+
 std::string header_of(size_t k, const std::string& more = "") { return fmt::format("{}{} [{}]", value_words[k], more, value_units[k]); }
 
-/// Every beam with the largest of what it bears over all steps, where and when its largest stress is.
+/// Every beam with the largest of what it bears over all steps, or those of --times, where and when its largest stress is.
 void overview(const BeamOptions& o, const RunFile& run) {
   Table table{
       {"beam", "cells", "N [N]", "V [N]", "M [N m]", "T [N m]", "high [Pa]", "low [Pa]", "von_mises [Pa]", "s [m]", "t [s]"}, {}, 1, 6};
   const Chain chain = chain_of(run, o.names);
+  const std::vector<size_t> rows = chosen_rows(chain, "all", o.times, run);
   for (const RunBeam& b : run.beams()) {
     if (!chain.forces.contains(b.name)) continue;
     double N = 0, V = 0, M = 0, T = 0, s = 0, t = 0;
@@ -101,7 +111,7 @@ void overview(const BeamOptions& o, const RunFile& run) {
     for (const Station& p : chain.stations) {
       if (p.beam != &b) continue;
       const Series& forces = chain.forces.at(b.name);
-      for (size_t row = 0; row < forces.rows(); ++row) {
+      for (const size_t row : rows) {
         const BeamValues v = chain.at(p, row);
         if (std::abs(v[2]) > std::abs(N)) N = v[2];
         V = std::max(V, std::hypot(v[0], v[1])), M = std::max(M, std::hypot(v[3], v[4]));
@@ -176,18 +186,15 @@ void run(const BeamOptions& o) {
   }
   const Chain chain = chain_of(run, o.names);
   const Series& first = chain.forces.begin()->second;
-  size_t n_rows = first.rows();  // a run in progress may be a row ahead in one array
-  for (const auto& [name, forces] : chain.forces) n_rows = std::min(n_rows, forces.rows());
-  const std::vector<double> instants(first.t.begin(), first.t.begin() + static_cast<std::ptrdiff_t>(n_rows));
-  const std::vector<size_t> rows = choose_instants(instants, "last", o.times, run.path, "step");
+  const std::vector<size_t> rows = chosen_rows(chain, o.envelope ? "all" : "last", o.times, run);
   std::vector<double> s;
   for (const Station& p : chain.stations) s.push_back(p.s);
   std::vector<BeamCurves> curves(o.envelope ? 2 : rows.size());
   if (o.envelope) {
     curves[0].label = ", least", curves[1].label = ", largest";
     for (const Station& p : chain.stations) {
-      BeamValues low = chain.at(p, 0), high = low;
-      for (size_t row = 1; row < n_rows; ++row) {
+      BeamValues low = chain.at(p, rows.front()), high = low;
+      for (const size_t row : rows) {
         const BeamValues v = chain.at(p, row);
         for (size_t k = 0; k < n_beam_values; ++k) low[k] = std::min(low[k], v[k]), high[k] = std::max(high[k], v[k]);
       }
@@ -239,7 +246,9 @@ Command beam_command(CLI::App& app) {
   const auto o = std::make_shared<BeamOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("names", o->names, "beams by name or glob, one after the other; without any: the largest values of every beam");
-  sub->add_option("--times", o->times, "times in s, the nearest steps, or FROM:TO, all steps within; the last step by default");
+  sub->add_option("--times", o->times,
+                  "times in s, the nearest steps, or FROM:TO, all steps within; by default the last step along a beam, all steps for the "
+                  "largest values");
   sub->add_flag("--envelope", o->envelope, "the least and the largest of all steps")->excludes("--times");
   sub->add_flag("--sections", o->sections,
                 "the numbers of each section: area, second moments, torsion constant, factors of shear, shear centre")

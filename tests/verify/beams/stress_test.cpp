@@ -85,6 +85,23 @@ TEST_F(BeamStress, HistoriesEnvelopesAndQuantitiesAreOfTheSameStress) {
   EXPECT_NE(over.out.find(fmt::format(",{},", f.col(2).maxCoeff())), std::string::npos) << over.out;
 }
 
+// A force that grows in four steps: the largest moment of the steps chosen is F L of the last of them.
+TEST_F(BeamStress, TheLargestValuesAreOfTheTimesChosen) {
+  const double F = 2, L = 1.2;
+  (void)solved("[section.s]\nkind = \"rectangle\"\nwidth = 0.02\nheight = 0.05\n" + std::string(steel) +
+               beam_of(fmt::format("[[0, 0, 0], [{}, 0, 0]]", L), 4, "a = \"ground\"\nmaterial = \"m\"") + push("arm.end", Vec3(0, 0, F)) +
+               in_steps(4));
+  for (const auto& [times, largest] : std::map<std::string, double>{
+           {"", 1}, {"--times 0.5", 0.5}, {"--times 0.25,0.75", 0.75}, {"--times 0:0.6", 0.5}, {"--envelope", 1}}) {
+    const Ran ran = succeeded(work.run("hilo-post beam run.h5 --json " + times));
+    const auto at = ran.out.find("\"M [N m]\": ");
+    ASSERT_NE(at, std::string::npos) << ran.out;
+    EXPECT_NEAR(std::stod(ran.out.substr(at + 11)), largest * F * L, 1e-5 * F * L) << times;
+  }
+  for (const char* names : {"", "arm"})
+    expect_end(work.run(fmt::format("hilo-post beam run.h5 {} --times 9", names)), 2, "no step near t = 9");
+}
+
 // Where nothing is known of the shape there is no stress, and no number stands for it.
 TEST_F(BeamStress, ASectionWithoutShapeHasNone) {
   const auto at =
