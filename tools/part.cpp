@@ -16,8 +16,10 @@
 int main(int argc, char** argv) {
   using namespace hilo;
   return guarded("hilo-part", [&] {
-    const auto app = make_app({"hilo-part", "Divide a tagged mesh among ranks, with the flexible and the rigid work balanced separately.",
-                               "hilo-part tags.h5 -n 2 -o parts-2.h5", about({metis()})});
+    const auto app = make_app(
+        {"hilo-part",
+         "Divide a tagged mesh among ranks, with the work of nonlinear cells balanced, and separately that of rigid and linear cells.",
+         "hilo-part tags.h5 -n 2 -o parts-2.h5", about({metis()})});
     std::string mesh_path, scene_path, output, weights = "weighted";
     int n_parts = 0;
     bool json = false, table = false;
@@ -25,7 +27,7 @@ int main(int argc, char** argv) {
     app->add_option("scene", scene_path, "scene.toml: the work of its joints and springs is weighed in");
     app->add_option("-n,--parts", n_parts, "number of parts (ranks)")->type_name("N")->check(CLI::Range(1, 1 << 20));
     app->add_option("-o,--output", output, "the parts file to write [parts-N.h5]; with --table a CSV file [none]")->type_name("FILE");
-    app->add_option("--weights", weights, "weighted: flexible and rigid work; uniform: number of cells")
+    app->add_option("--weights", weights, "weighted: work of nonlinear cells, and of others; uniform: number of cells")
         ->type_name("WORD")
         ->capture_default_str()
         ->check(CLI::IsMember({"weighted", "uniform"}));
@@ -54,8 +56,8 @@ int main(int argc, char** argv) {
       throw Error(mesh_path, e.message, e.hint, e.exit);
     }
     division.report = report(graph, division.part, n_parts);
-    if (const auto flexible = std::ranges::count(graph.is_flexible, 1);
-        flexible > 0 && flexible < graph.n() && n_parts > 1 && n_parts <= flexible)
+    if (const auto nonlinear = std::ranges::count(graph.is_nonlinear, 1);
+        nonlinear > 0 && nonlinear < graph.n() && n_parts > 1 && n_parts <= nonlinear)
       division.other = report(graph, partition(graph, file.mesh, n_parts, weights != "weighted"), n_parts);
 
     auto provenance = file.provenance;

@@ -51,6 +51,21 @@ TEST_F(Part, FlexibleAndRigidWorkAreBothBalanced) {
   }
 }
 
+// A step costs a nonlinear cell a tangent, a linear one nothing: its region is a body with modes.
+TEST_F(Part, LinearCellsWeighAsLittleAsRigidOnes) {
+  write_tags(place / "linear.h5", place / "mesh.h5", {Fidelity::linear, Fidelity::nonlinear}, {});
+  for (const int n : {2, 4, 7}) {
+    const auto ran = succeeded(place.run("hilo-part linear.h5 -o parts.h5 -n " + std::to_string(n)));
+    const MeshFile f = read_mesh_file(place / "parts.h5");
+    EXPECT_LE(balance(f, Fidelity::nonlinear), std::ceil(80. / n) / (80. / n) + 0.051) << n << ran.out;
+    EXPECT_LE(balance(f, Fidelity::linear), 1.5) << n;
+    expect_words(ran.out, "nonlinear work, ");
+    expect_words(ran.out, "(rigid and linear cells)");
+  }
+  write_tags(place / "all.h5", place / "mesh.h5", {Fidelity::linear, Fidelity::linear}, {});
+  EXPECT_LE(balance(parted("all.h5 -n 4"), Fidelity::linear), 1.15);
+}
+
 TEST_F(Part, UniformWeightsBalanceCellsAndLeaveTheFlexibleWorkUneven) {
   const MeshFile f = parted("tags.h5 -n 8 --weights uniform");
   const auto cells = cells_of_parts(f);
@@ -147,10 +162,10 @@ TEST_F(Part, TableAgreesWithTheFile) {
   const auto ran = place.run("hilo-part tags.h5 -n 2 -o parts.h5");
   const MeshFile f = read_mesh_file(place / "parts.h5");
   const auto cells = cells_of_parts(f);
-  EXPECT_EQ(ran.out.find("part  cells  flexible  flexible work  rigid work  pieces\n"), 0u) << ran.out;
+  EXPECT_EQ(ran.out.find("part  cells  nonlinear  nonlinear work  other work  pieces\n"), 0u) << ran.out;
   EXPECT_NE(ran.out.find("   0    " + std::to_string(cells[0])), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("\nweighted: largest divided by mean: 1.0"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("\nuniform: largest divided by mean: 2.000 flexible work"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nuniform: largest divided by mean: 2.000 nonlinear work"), std::string::npos) << ran.out;
   EXPECT_EQ(f.provenance.back(), "hilo-part tags.h5 -n 2 -o parts.h5");
   // Facets between parts, counted from the nodes that cells share.
   std::map<std::set<std::int64_t>, std::vector<std::int64_t>> facets;
@@ -161,7 +176,8 @@ TEST_F(Part, TableAgreesWithTheFile) {
     }
   int cut = 0;
   for (const auto& [nodes, cells_at] : facets) cut += cells_at.size() == 2 && f.rank[cells_at[0]] != f.rank[cells_at[1]];
-  EXPECT_NE(ran.out.find("rigid work; cut " + std::to_string(cut) + " facets"), std::string::npos) << cut << "\n" << ran.out;
+  EXPECT_NE(ran.out.find("other work (rigid and linear cells); cut " + std::to_string(cut) + " facets"), std::string::npos) << cut << "\n"
+                                                                                                                            << ran.out;
 }
 
 TEST_F(Part, SameInputGivesSameBytes) {
@@ -188,8 +204,8 @@ TEST_F(Part, JointsOfASceneKeepTheirEndsTogether) {
   EXPECT_NE(ran.out.find("\"pieces\": 1"), std::string::npos) << ran.out;
   EXPECT_EQ(ran.out.find("\"pieces\": 2", ran.out.find("\"parts\": [")), std::string::npos) << ran.out;
   std::int64_t work = 0;
-  for (size_t at = ran.out.find("\"flexible work\": "); at != std::string::npos; at = ran.out.find("\"flexible work\": ", at + 1))
-    work += std::stoi(ran.out.substr(at + 17));
+  for (size_t at = ran.out.find("\"nonlinear work\": "); at != std::string::npos; at = ran.out.find("\"nonlinear work\": ", at + 1))
+    work += std::stoi(ran.out.substr(at + 18));
   EXPECT_EQ(work, 16 * 100 + 16);
 }
 
@@ -198,7 +214,7 @@ TEST_F(Part, WrongRequestsHaveTheirExitCodes) {
   expect_refused("hilo-part tags.h5 -n 0", 1, "--parts: Value 0 not in range 1 to 1048576 (see hilo-part --help)");
   expect_refused("hilo-part tags.h5 -n 2 --weigths uniform", 1, "unknown option --weigths (did you mean \"--weights\"?)");
   expect_refused("hilo-part tags.h5 -n 2 -o tags.h5", 1, "tags.h5: would overwrite the file it reads (give another -o)");
-  expect_refused("hilo-part tags.h5 -n 81", 2, "tags.h5: 81 parts of 80 flexible cells would leave parts without work (at most 80)");
+  expect_refused("hilo-part tags.h5 -n 81", 2, "tags.h5: 81 parts of 80 nonlinear cells would leave parts without work (at most 80)");
   expect_refused("hilo-part none.h5 -n 2", 2, "none.h5: no such file");
   expect_refused("hilo-part tags.h5 none.toml -n 2", 2, "none.toml: no such file");
   expect_refused("hilo-part tags.h5 -n 2 -o nowhere/parts.h5", 4, "nowhere/parts.h5: cannot write: No such file or directory");

@@ -73,7 +73,7 @@ TEST_F(Show, PartsShowWhatTheyLinkTo) {
   EXPECT_EQ(line(ran.out, "mesh from"), "mesh from mesh.h5");
   EXPECT_EQ(line(ran.out, "tags from"), "tags from tags.h5");
   EXPECT_EQ(line(ran.out, "hull "), "hull rigid 6 0.75 7850 2.1e+11 0.3 [0, 0, 0] to [1.5, 1, 0.5]");
-  EXPECT_NE(ran.out.find("part  cells  flexible\n   0      6         0\n   1      2         2\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("part  cells  nonlinear\n   0      6          0\n   1      2          2\n"), std::string::npos) << ran.out;
 }
 
 TEST_F(Show, RunShowsBodiesFieldsAndTheLargestValueOfEachHistory) {

@@ -16,8 +16,8 @@ namespace {
 static_assert(sizeof(idx_t) == sizeof(std::int32_t));
 
 constexpr std::int32_t joint_work = 16;  // with its share of the bodies it joins, by costs-bench
-/// What it costs to part two cells: unknowns are exchanged between flexible ones, next to nothing where one is rigid.
-constexpr std::int32_t between_flexible = 8, beside_rigid = 1, through_joint = 4;
+/// What it costs to part two cells: unknowns are exchanged between nonlinear ones, next to nothing where one is rigid or linear.
+constexpr std::int32_t between_nonlinear = 8, beside_other = 1, through_joint = 4;
 
 void build_dual(const Mesh& mesh, CellGraph& g) {
   std::vector<idx_t> start{0}, corner;
@@ -37,7 +37,7 @@ void build_dual(const Mesh& mesh, CellGraph& g) {
   METIS_Free(next);
 }
 
-/// The cell that has a node of `nodes` and lies nearest to `at`; flexible ones are preferred.
+/// The cell that has a node of `nodes` and lies nearest to `at`; nonlinear ones are preferred.
 std::int32_t nearest_cell(const Mesh& mesh, const CellGraph& g, const std::vector<std::int64_t>& nodes, const Vec3& at) {
   std::vector<char> in(mesh.X.size(), 0);
   for (const auto n : nodes) in[n] = 1;
@@ -49,15 +49,15 @@ std::int32_t nearest_cell(const Mesh& mesh, const CellGraph& g, const std::vecto
     Vec3 centre = Vec3::Zero();
     for (const auto n : cell) centre += mesh.X[n] / static_cast<double>(cell.size());
     const double distance = (centre - at).squaredNorm();
-    const bool better_kind = best >= 0 && g.is_flexible[c] && !g.is_flexible[best];
-    const bool worse_kind = best >= 0 && !g.is_flexible[c] && g.is_flexible[best];
+    const bool better_kind = best >= 0 && g.is_nonlinear[c] && !g.is_nonlinear[best];
+    const bool worse_kind = best >= 0 && !g.is_nonlinear[c] && g.is_nonlinear[best];
     if (better_kind || (distance < least && !worse_kind)) best = static_cast<std::int32_t>(c), least = distance;
   }
   return best;
 }
 
 void add_edges(CellGraph& g, const std::vector<std::pair<std::int32_t, std::int32_t>>& edges) {
-  std::vector<std::vector<std::int32_t>> more(g.flexible.size());
+  std::vector<std::vector<std::int32_t>> more(g.nonlinear.size());
   const auto neighbours = [&](std::int32_t c) { return std::span(g.next).subspan(g.first[c], g.first[c + 1] - g.first[c]); };
   for (const auto& [a, b] : edges) {
     if (a == b || std::ranges::count(neighbours(a), b) || std::ranges::count(more[a], b)) continue;
@@ -87,7 +87,7 @@ void add_joints(const Mesh& mesh, const Scene& scene, CellGraph& g) {
         if (cell >= 0) ends.push_back(cell);
       }
       if (ends.empty()) continue;
-      (g.is_flexible[ends[0]] ? g.flexible : g.rigid)[ends[0]] += joint_work;
+      (g.is_nonlinear[ends[0]] ? g.nonlinear : g.other)[ends[0]] += joint_work;
       if (ends.size() == 2) edges.emplace_back(ends[0], ends[1]);
       ++g.joints;
     }
@@ -99,24 +99,24 @@ void add_joints(const Mesh& mesh, const Scene& scene, CellGraph& g) {
 CellGraph cell_graph(const Mesh& mesh, const std::vector<Fidelity>& fidelity, const Scene* scene) {
   CellGraph g;
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
-    const bool flexible = fidelity[mesh.region[c]] != Fidelity::rigid;
-    g.is_flexible.push_back(flexible);
-    g.flexible.push_back(flexible ? work_of_cell(static_cast<Shape>(mesh.shape[c])) : 0);
-    g.rigid.push_back(flexible ? 0 : 1);
+    const bool nonlinear = fidelity[mesh.region[c]] == Fidelity::nonlinear;
+    g.is_nonlinear.push_back(nonlinear);
+    g.nonlinear.push_back(nonlinear ? work_of_cell(static_cast<Shape>(mesh.shape[c])) : 0);
+    g.other.push_back(nonlinear ? 0 : 1);
   }
   build_dual(mesh, g);
   for (std::int32_t c = 0; c < g.n(); ++c)
     for (auto k = g.first[c]; k < g.first[c + 1]; ++k)
-      g.joined.push_back(g.is_flexible[c] && g.is_flexible[g.next[k]] ? between_flexible : beside_rigid);
+      g.joined.push_back(g.is_nonlinear[c] && g.is_nonlinear[g.next[k]] ? between_nonlinear : beside_other);
   if (scene) add_joints(mesh, *scene, g);
   return g;
 }
 
-std::vector<int> pieces_of_parts(const CellGraph& g, const std::vector<std::int32_t>& part, int n_parts, bool flexible_only) {
+std::vector<int> pieces_of_parts(const CellGraph& g, const std::vector<std::int32_t>& part, int n_parts, bool nonlinear_only) {
   std::vector<int> pieces(n_parts, 0);
   std::vector<char> seen(part.size(), 0);
   std::vector<std::int32_t> stack;
-  const auto skip = [&](std::int32_t c) { return seen[c] || (flexible_only && !g.is_flexible[c]); };
+  const auto skip = [&](std::int32_t c) { return seen[c] || (nonlinear_only && !g.is_nonlinear[c]); };
   for (std::int32_t start = 0; start < g.n(); ++start) {
     if (skip(start)) continue;
     ++pieces[part[start]];

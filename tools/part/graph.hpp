@@ -10,21 +10,21 @@
 namespace hilo {
 
 struct CellGraph {
-  std::vector<std::int32_t> first;     // first neighbour of each cell             (n_cells + 1)
-  std::vector<std::int32_t> next;      // neighbours
-  std::vector<std::int32_t> joined;    // weight of each of these edges
-  std::vector<std::int32_t> flexible;  // work of a flexible cell [0.01 linear hexahedra], 0 for rigid ones (n_cells)
-  std::vector<std::int32_t> rigid;     // work of a rigid cell, 0 for flexible ones (n_cells)
-  std::vector<char> is_flexible;       // (n_cells)
-  int joints = 0;                      // joints and springs of the scene that were weighed in
-  std::int32_t n() const { return static_cast<std::int32_t>(flexible.size()); }
+  std::vector<std::int32_t> first;      // first neighbour of each cell             (n_cells + 1)
+  std::vector<std::int32_t> next;       // neighbours
+  std::vector<std::int32_t> joined;     // weight of each of these edges
+  std::vector<std::int32_t> nonlinear;  // work of a nonlinear cell [0.01 linear hexahedra], 0 for others (n_cells)
+  std::vector<std::int32_t> other;      // work of a rigid or linear cell, which no step evaluates, 0 for nonlinear ones (n_cells)
+  std::vector<char> is_nonlinear;       // (n_cells)
+  int joints = 0;                       // joints and springs of the scene that were weighed in
+  std::int32_t n() const { return static_cast<std::int32_t>(nonlinear.size()); }
 };
 
 /// The dual graph of the mesh.  A scene adds the work of its joints and springs to the cell nearest to each of their ends, and joins the
 /// two.
 CellGraph cell_graph(const Mesh& mesh, const std::vector<Fidelity>& fidelity, const Scene* scene);
 
-/// Connected pieces of the cells (of the flexible ones alone, where asked) that `part` gives the same number, per part.
-std::vector<int> pieces_of_parts(const CellGraph& graph, const std::vector<std::int32_t>& part, int n_parts, bool flexible_only = false);
+/// Connected pieces of the cells (of the nonlinear ones alone, where asked) that `part` gives the same number, per part.
+std::vector<int> pieces_of_parts(const CellGraph& graph, const std::vector<std::int32_t>& part, int n_parts, bool nonlinear_only = false);
 
 }  // namespace hilo

@@ -10,16 +10,16 @@ namespace hilo {
 
 /// What a partition is worth.
 struct PartReport {
-  std::vector<std::int64_t> cells, flexible_cells, flexible_work, rigid_work;  // per part
-  std::vector<int> pieces, flexible_pieces;                                    // connected pieces per part; of its flexible cells alone
-  std::int64_t cut = 0, flexible_cut = 0;                                      // facets between parts; those between two flexible cells
-  double flexible_balance = 1, rigid_balance = 1;                              // largest work over the mean
-  double speed_up = 1;                                                         // all work over the largest of a part
+  std::vector<std::int64_t> cells, nonlinear_cells, nonlinear_work, other_work;  // per part
+  std::vector<int> pieces, nonlinear_pieces;                                     // connected pieces per part; of its nonlinear cells alone
+  std::int64_t cut = 0, nonlinear_cut = 0;                                       // facets between parts; those between two nonlinear cells
+  double nonlinear_balance = 1, other_balance = 1;                               // largest work over the mean
+  double speed_up = 1;                                                           // all work over the largest of a part
 };
 PartReport report(const CellGraph& graph, const std::vector<std::int32_t>& part, int n_parts);
 
-/// Balance flexible and rigid work separately (weighted), or the number of cells (uniform).  Throws Error when there are more parts than
-/// cells, or than flexible cells while there are some.  Of several attempts the best is returned: first no empty part, then balance, then
+/// Balance nonlinear and other work separately (weighted), or the number of cells (uniform).  Throws Error when there are more parts than
+/// cells, or than nonlinear cells while there are some.  Of several attempts the best is returned: first no empty part, then balance, then
 /// few pieces, then a small cut.
 std::vector<std::int32_t> partition(const CellGraph& graph, const Mesh& mesh, int n_parts, bool weighted);
 

@@ -12,10 +12,10 @@ namespace {
 int sum(const std::vector<int>& list) { return std::accumulate(list.begin(), list.end(), 0); }
 
 Table table_of(const PartReport& r) {
-  Table t{{"part", "cells", "flexible", "flexible work", "rigid work", "pieces"}, {}, 0};
+  Table t{{"part", "cells", "nonlinear", "nonlinear work", "other work", "pieces"}, {}, 0};
   for (size_t p = 0; p < r.cells.size(); ++p) {
     std::vector<std::string> row{std::to_string(p)};
-    for (const auto* list : {&r.cells, &r.flexible_cells, &r.flexible_work, &r.rigid_work}) row.push_back(std::to_string((*list)[p]));
+    for (const auto* list : {&r.cells, &r.nonlinear_cells, &r.nonlinear_work, &r.other_work}) row.push_back(std::to_string((*list)[p]));
     row.push_back(std::to_string(r.pieces[p]));
     t.rows.push_back(std::move(row));
   }
@@ -24,20 +24,19 @@ Table table_of(const PartReport& r) {
 
 std::string line(const std::string& weights, const PartReport& r) {
   return fmt::format(
-      "{}: largest divided by mean: {:.3f} flexible work, {:.3f} rigid work; cut {} facets, {} between flexible cells; {} pieces, {} of "
-      "flexible "
-      "cells\n",
-      weights, r.flexible_balance, r.rigid_balance, r.cut, r.flexible_cut, sum(r.pieces), sum(r.flexible_pieces));
+      "{}: largest divided by mean: {:.3f} nonlinear work, {:.3f} other work (rigid and linear cells); cut {} facets, {} between nonlinear "
+      "cells; {} pieces, {} of nonlinear cells\n",
+      weights, r.nonlinear_balance, r.other_balance, r.cut, r.nonlinear_cut, sum(r.pieces), sum(r.nonlinear_pieces));
 }
 
 Json json_of(const PartReport& r) {
-  return {{"flexible_balance", {r.flexible_balance, 7}},
-          {"rigid_balance", {r.rigid_balance, 7}},
+  return {{"nonlinear_balance", {r.nonlinear_balance, 7}},
+          {"other_balance", {r.other_balance, 7}},
           {"cut", r.cut},
-          {"flexible_cut", r.flexible_cut},
+          {"nonlinear_cut", r.nonlinear_cut},
           {"speed_up", {r.speed_up, 5}},
           {"pieces", sum(r.pieces)},
-          {"flexible_pieces", sum(r.flexible_pieces)}};
+          {"nonlinear_pieces", sum(r.nonlinear_pieces)}};
 }
 
 std::string other_name(const Division& d) { return d.weights == "weighted" ? "uniform" : "weighted"; }
@@ -64,17 +63,17 @@ std::string division_json(const Division& d, const CellGraph& graph, const std::
 }
 
 Table comparison(const CellGraph& graph, const Mesh& mesh, int most) {
-  Table t{{"parts", "uniform work", "uniform speed-up", "weighted work", "weighted speed-up", "rigid work", "pieces", "flexible pieces",
-           "cut", "flexible cut"},
+  Table t{{"parts", "uniform work", "uniform speed-up", "weighted work", "weighted speed-up", "other work", "pieces", "nonlinear pieces",
+           "cut", "nonlinear cut"},
           {},
           0};
-  const auto flexible = std::ranges::count(graph.is_flexible, 1);
-  for (int n = 2; n <= most && n <= (flexible ? flexible : graph.n()); n *= 2) {
+  const auto nonlinear = std::ranges::count(graph.is_nonlinear, 1);
+  for (int n = 2; n <= most && n <= (nonlinear ? nonlinear : graph.n()); n *= 2) {
     const PartReport u = report(graph, partition(graph, mesh, n, false), n), w = report(graph, partition(graph, mesh, n, true), n);
-    t.rows.push_back({std::to_string(n), fmt::format("{:.3f}", u.flexible_balance), fmt::format("{:.2f}", u.speed_up),
-                      fmt::format("{:.3f}", w.flexible_balance), fmt::format("{:.2f}", w.speed_up), fmt::format("{:.3f}", w.rigid_balance),
-                      std::to_string(sum(w.pieces)), std::to_string(sum(w.flexible_pieces)), std::to_string(w.cut),
-                      std::to_string(w.flexible_cut)});
+    t.rows.push_back({std::to_string(n), fmt::format("{:.3f}", u.nonlinear_balance), fmt::format("{:.2f}", u.speed_up),
+                      fmt::format("{:.3f}", w.nonlinear_balance), fmt::format("{:.2f}", w.speed_up), fmt::format("{:.3f}", w.other_balance),
+                      std::to_string(sum(w.pieces)), std::to_string(sum(w.nonlinear_pieces)), std::to_string(w.cut),
+                      std::to_string(w.nonlinear_cut)});
   }
   return t;
 }
@@ -94,9 +93,9 @@ std::vector<std::string> doubts(const Division& d) {
   std::vector<std::string> out;
   const auto empty = std::ranges::count(d.report.cells, 0);
   if (empty) out.push_back(fmt::format("{} parts are empty", empty));
-  if (d.weights == "weighted" && d.report.flexible_balance > 1.3)
-    out.push_back(fmt::format("the heaviest part has {:.2f} times the mean flexible work; fewer parts would serve as well",
-                              d.report.flexible_balance));
+  if (d.weights == "weighted" && d.report.nonlinear_balance > 1.3)
+    out.push_back(fmt::format("the heaviest part has {:.2f} times the mean nonlinear work; fewer parts would serve as well",
+                              d.report.nonlinear_balance));
   return out;
 }
 

@@ -18,8 +18,8 @@ struct Division {
 };
 std::string division_text(const Division& d, const CellGraph& graph);
 std::string division_json(const Division& d, const CellGraph& graph, const std::string& output);
-/// Uniform and weighted partitions into 2, 4, 8 ... `most` parts: the largest flexible work over its mean, and the speed-up that the work
-/// allows (exchange left out); rigid work, pieces and cut facets of the weighted ones.
+/// Uniform and weighted partitions into 2, 4, 8 ... `most` parts: the largest nonlinear work over its mean, and the speed-up that the work
+/// allows (exchange left out); work of rigid and linear cells, pieces and cut facets of the weighted ones.
 Table comparison(const CellGraph& graph, const Mesh& mesh, int most);
 std::string csv(const Table& table);
 /// What is less than good about a partition, one line each.

@@ -75,10 +75,11 @@ Table sets(const Mesh& m) {
 }
 
 Table parts(const MeshFile& f) {
-  std::vector<std::int64_t> cells(f.n_parts, 0), flexible(f.n_parts, 0);
-  for (size_t c = 0; c < f.rank.size(); ++c) ++cells[f.rank[c]], flexible[f.rank[c]] += f.fidelity[f.mesh.region[c]] != Fidelity::rigid;
-  Table t{{"part", "cells", "flexible"}, {}, 0};
-  for (int p = 0; p < f.n_parts; ++p) t.rows.push_back({std::to_string(p), std::to_string(cells[p]), std::to_string(flexible[p])});
+  std::vector<std::int64_t> cells(f.n_parts, 0), nonlinear(f.n_parts, 0);
+  for (size_t c = 0; c < f.rank.size(); ++c)
+    ++cells[f.rank[c]], nonlinear[f.rank[c]] += f.fidelity[f.mesh.region[c]] == Fidelity::nonlinear;
+  Table t{{"part", "cells", "nonlinear"}, {}, 0};
+  for (int p = 0; p < f.n_parts; ++p) t.rows.push_back({std::to_string(p), std::to_string(cells[p]), std::to_string(nonlinear[p])});
   return t;
 }
 
