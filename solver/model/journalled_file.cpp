@@ -180,6 +180,8 @@ void JournalledFile::recover(const std::string& path) {
                 fmt::format("make it and {} writable", name), Exit::resources);
 }
 
+bool JournalledFile::in_commit(const std::string& path) { return ::access(journal_of(path).c_str(), F_OK) == 0; }
+
 JournalledFile::JournalledFile(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {
   struct stat status {};
   ::fstat(descriptor, &status);

@@ -25,6 +25,9 @@ class JournalledFile {
   /// What a killed process left half-committed is put in its place.  Error (exit 4) where it cannot be written.
   static void recover(const std::string& path);
 
+  /// A commit of it is under way, or was cut off.
+  static bool in_commit(const std::string& path);
+
   JournalledFile(std::string path, int descriptor);
   ~JournalledFile();
   JournalledFile(const JournalledFile&) = delete;

@@ -46,7 +46,10 @@ Cause last_cause() {
   return cause;
 }
 
+std::set<Store::Impl*> Store::Impl::readers;
+
 Store::Impl::~Impl() {
+  readers.erase(this);
   if (growing) growing->give_up();
   if (file.ok()) close();
   if (temporary) ::unlink(on_disk.c_str());
@@ -116,21 +119,39 @@ Store Store::open(const std::string& path) {
   ::close(descriptor);
   JournalledFile::recover(path);
   if (status.st_size == 0) throw Error(path, "empty file");
-  if (H5Fis_hdf5(path.c_str()) <= 0) throw Error(path, "not an HDF5 file");
-  walk_in_child(path);
-  auto impl = std::make_unique<Impl>();
-  impl->path = impl->on_disk = path;
+  return while_it_grows(path, [&](const FileState& now) {
+    if (H5Fis_hdf5(path.c_str()) <= 0) throw Error(path, "not an HDF5 file");
+    Impl::forget_other_states(now);
+    walk_in_child(path);
+    auto impl = std::make_unique<Impl>();
+    impl->path = impl->on_disk = path;
+    impl->reopen(now);
+    Impl::readers.insert(impl.get());
+    Store store(std::move(impl));
+    std::vector<std::string> chain;
+    Impl::follow_links(store, chain);
+    return store;
+  });
+}
+
+void Store::Impl::open_to_read() {
   const Id access = reading();
-  impl->file = Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
-  if (!impl->file.ok()) {
-    const Cause cause = last_cause();
-    const bool cut = cause.text.find("truncated") != std::string::npos || cause.text.find("eof") != std::string::npos;
-    throw Error(path, cut ? "truncated file" : fmt::format("truncated or damaged HDF5 file: {}", cause.text));
-  }
-  Store store(std::move(impl));
-  std::vector<std::string> chain;
-  Impl::follow_links(store, chain);
-  return store;
+  file = Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
+  if (file.ok()) return;
+  const Cause cause = last_cause();
+  const bool cut = cause.text.find("truncated") != std::string::npos || cause.text.find("eof") != std::string::npos;
+  throw Error(path, cut ? "truncated file" : fmt::format("truncated or damaged HDF5 file: {}", cause.text));
+}
+
+void Store::Impl::forget_other_states(const FileState& now) {
+  for (Impl* reader : readers)
+    if (reader->opened.file == now.file && !reader->opened.lasts(now)) reader->file = Id(), reader->names.clear();
+}
+
+void Store::Impl::reopen(const FileState& now) {
+  forget_other_states(now);
+  opened = now, names.clear(), file = Id();
+  open_to_read();
 }
 
 /// Files behind the links of a file that is read are read as well; links that lead in a circle are refused by name.  `chain`: the files

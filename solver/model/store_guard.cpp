@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
+#include <ctime>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -132,12 +134,28 @@ std::uint64_t digest_of_attributes(hid_t file) {
   return look.attributes.value();
 }
 
+FileState state_of(const std::string& path) {
+  struct stat s {};
+  if (::stat(path.c_str(), &s) != 0) return {};
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME_COARSE, &now);  // of file systems
+  const double age = static_cast<double>(now.tv_sec - s.st_mtim.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec - s.st_mtim.tv_nsec);
+  return {{s.st_dev, s.st_ino}, {s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec}, JournalledFile::in_commit(path), std::abs(age) < 0.02};
+}
+
+FileState settled(const std::string& path) {
+  FileState now = state_of(path);
+  for (int k = 0; now.in_commit && k < 100; ++k) ::usleep(2000), now = state_of(path);
+  return now;
+}
+
 void walk_in_child(const std::string& path) {
   struct stat s;
   if (::stat(path.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return;  // told by who opens it
   using Seen = std::tuple<dev_t, ino_t, off_t, time_t, long>;
   static std::set<Seen> seen;
-  if (!seen.insert({s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec}).second) return;
+  const Seen now{s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec};
+  if (seen.contains(now)) return;
   const pid_t child = ::fork();
   if (child < 0) return;  // no room for another process: as well without
   if (child == 0) walk(path, static_cast<hsize_t>(s.st_size));
@@ -148,7 +166,7 @@ void walk_in_child(const std::string& path) {
     throw Error(path, "damaged: its attributes are not what was written", "make it again, or copy it again");
   if (WIFEXITED(status) && WEXITSTATUS(status) == no_way_through)
     throw Error(path, "damaged: its objects and attributes cannot be listed", "make it again, or copy it again");
-  if (!WIFSIGNALED(status)) return;
+  if (!WIFSIGNALED(status)) return void(seen.insert(now));
   const bool endless = WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL;
   throw Error(path, fmt::format("damaged: the HDF5 library {} it", endless ? "comes to no end with" : "crashes on"),
               "make it again, or copy it again");

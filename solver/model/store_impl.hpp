@@ -3,16 +3,21 @@
 #pragma once
 #define H5_USE_110_API  // what all libraries from 1.10 on share, such as H5Ovisit of five arguments
 #include <hdf5.h>
+#include <sys/types.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
 
+#include "base/error.hpp"
 #include "model/journalled_file.hpp"
 #include "model/store.hpp"
 
@@ -52,6 +57,38 @@ struct Cause {
   std::string text;
 };
 Cause last_cause();
+
+/// What a file is to readers while another process may write to it.
+struct FileState {
+  std::tuple<dev_t, ino_t> file{};
+  std::tuple<off_t, time_t, long> content{};
+  bool in_commit = false;  // what belongs together is being put in place
+  bool is_young = true;    // so recent that one more write would leave its time as it is
+  /// Has nothing been written since?
+  bool lasts(const FileState& now) const {
+    return !is_young && !in_commit && std::tie(file, content, in_commit) == std::tie(now.file, now.content, now.in_commit);
+  }
+};
+FileState state_of(const std::string& path);
+/// The same after the commit that is under way, where there is one.
+FileState settled(const std::string& path);
+
+/// What `read(state)` returns, made again where the file changed meanwhile, a bounded number of times: HDF5 reads what describes arrays
+/// piece by piece, and pieces of two commits do not fit, which looks like damage or like zeros.
+template <class Read>
+auto while_it_grows(const std::string& path, Read&& read) {
+  constexpr int most = 20, most_of_success = 3;  // what went well is nearly always right: bytes were appended
+  for (int attempt = 1;; ++attempt) {
+    const FileState before = settled(path);
+    try {
+      auto result = read(before);
+      if (attempt >= most_of_success || before.lasts(state_of(path))) return result;
+    } catch (const Error&) {
+      if (attempt >= most || before.lasts(state_of(path))) throw;
+    }
+    ::usleep(static_cast<useconds_t>(5000 * attempt));
+  }
+}
 
 /// Error where the library does not survive a walk through the file.
 void walk_in_child(const std::string& path);
@@ -138,6 +175,8 @@ struct Store::Impl {
   JournalledFile* growing = nullptr;  // where the file is written through one
   bool grows_on = false;              // it was there before: what is written again replaces what was
   int lock = -1;                      // descriptor that tells others of it
+  FileState opened{};                 // that is read
+  bool in_read = false;
   std::unordered_map<std::string, Rows> rows;
   size_t pending_bytes = 0;  // of all rows
   struct Names {
@@ -157,6 +196,27 @@ struct Store::Impl {
   void lock_output();
   /// Commit, and take the name the user gave after `before`.
   void commit(bool safe, const std::function<void()>& before);
+
+  /// Reads of a file that another process may write to.
+  template <class Read>
+  auto steadily(Read&& read) {
+    if (writable || in_read) return read();
+    struct Reading {
+      bool& flag;
+      ~Reading() { flag = false; }
+    } reading{in_read};
+    in_read = true;
+    return while_it_grows(path, [&](const FileState& now) {
+      if (now.file == opened.file && (!opened.lasts(now) || !file.ok())) reopen(now);
+      return read();
+    });
+  }
+  /// All that are open to read: the library shares what it knows of a file among them, and with a child.
+  static std::set<Impl*> readers;
+  /// Closes those that have seen another state of the file; each opens it again when it reads.
+  static void forget_other_states(const FileState& now);
+  void open_to_read();
+  void reopen(const FileState& now);
 
   static void follow_links(Store& store, std::vector<std::string>& chain);
 

@@ -246,6 +246,53 @@ TEST(Store, WhatWasFlushedSurvivesAKilledRun) {
   EXPECT_EQ(reader.read<double>("/t").back(), 200.);
 }
 
+// Commits rewrite what describes arrays while a reader goes from one piece of it to the next.
+TEST(Store, IsReadWhileItGrows) {
+  const Folder folder;
+  constexpr int arrays = 60;
+  const auto name = [](int k) { return "/history/body/b" + std::to_string(k); };
+  const pid_t child = ::fork();
+  if (child == 0) {
+    Store store = Store::create_growing(folder / "run.h5");
+    store.start_rows<double>("/history/t", {});
+    for (int k = 0; k < arrays; ++k) store.start_rows<double>(name(k), {12});
+    for (int step = 0;; ++step) {
+      store.append<double>("/history/t", std::vector<double>{1. * step});
+      for (int k = 0; k < arrays; ++k) store.append<double>(name(k), std::vector<double>(12, step + 1.));
+      store.write<double>("/field/" + std::to_string(step), std::vector<double>(200, step + 1.), {200});
+      if (step % 20 == 0) store.flush(false), ::usleep(50000);
+    }
+  }
+  while (!std::filesystem::exists(folder / "run.h5")) ::usleep(1000);
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(4);
+  std::string wrong;
+  int rounds = 0;
+  try {
+    const Store kept = Store::open(folder / "run.h5");
+    for (; std::chrono::steady_clock::now() < until; ++rounds) {
+      const Store now = Store::open(folder / "run.h5");
+      for (const Store* store : {&kept, &now}) {
+        const auto t = store->read<double>("/history/t");
+        for (int k = 0; k < arrays; k += 7) {
+          const auto x = store->read<double>(name(k));
+          if (x.size() < 12 * t.size()) wrong = "fewer rows than before";
+          for (size_t i = 0; i < x.size(); ++i)
+            if (x[i] != static_cast<double>(i / 12) + 1) wrong = "other numbers than were written";
+        }
+        const auto fields = store->list("/field");
+        if (fields.empty() || store->read<double>("/field/" + fields.back()).size() != 200) wrong = "no field";
+      }
+    }
+  } catch (const Error& e) {
+    wrong = e.what();
+  }
+  ::kill(child, SIGKILL);
+  int status;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(wrong, "");
+  EXPECT_GT(rounds, 3);
+}
+
 TEST(Store, LinksAreRelativeAndFollowAMovedFolder) {
   const Folder folder;
   std::filesystem::create_directories(folder / "case/geometry");

@@ -47,9 +47,10 @@ int walk(const Store& store, const std::string& group) {
 /// All histories of a run have as many rows as its time array.
 void check_histories(const Store& store) {
   if (!store.has("/history/t")) throw Error(store.path(), "no array /history/t");
-  const auto rows = store.shape("/history/t")[0];
+  const auto rows_of_time = [&] { return store.shape("/history/t")[0]; };
   const auto check = [&](const std::string& array) {
-    if (const auto n = store.shape(array)[0]; n != rows)
+    const auto rows = rows_of_time(), n = store.shape(array)[0];
+    if (n < rows || n > rows_of_time())  // the run may have gone on in between
       throw Error(store.path(), fmt::format("damaged: {} has {} rows, /history/t has {}", array, n, rows));
   };
   for (const auto& name : store.list("/history")) {
