@@ -23,7 +23,7 @@ struct Options {
   bool json = false, full = false, no_full = false;
 };
 
-/// The tightest relative tolerance of what is asked; absolute ones know no share of the answer before a run, and count as `tol`.
+/// The tightest relative tolerance of what is asked; the share of one in units is known after the first run.
 double tightest(const Scene& scene, const QuantityTolerance& tol) {
   double least = tol.value;
   bool asked = false;

@@ -135,6 +135,8 @@ void Judgement::find_base() {
     throw Error("", v.why.empty() ? fmt::format("quantity \"{}\": stress at {:.2g} instants is no history", v.name, instants) : v.why,
                 is_seldom ? fmt::format("output.interval = {:.2g}: fields at 50 instants", all.written("s", end / 50)) : "");
   }
+  for (const QuantityValue& v : a.base->values)  // those in units too: their share is known now
+    if (v.allowed > 0 && v.value != 0) a.tightest = std::min(a.tightest, v.allowed / std::abs(v.value));
   window_ = window_of(*a.base);
 }
 
@@ -176,7 +178,7 @@ bool Judgement::doubts(const Candidate& c, Assignment& levels) {
   for (size_t r = 0; r < n; ++r) {
     const auto at = c.doubt.find(r);
     const bool pressed = is_touched(r) && fidelity(levels[r]) == Fidelity::linear;
-    const double doubt = (c.beyond.contains(r) || pressed ? 1 : 0) + (at == c.doubt.end() ? 0 : at->second / o.tightest);
+    const double doubt = (c.beyond.contains(r) || pressed ? 1 : 0) + (at == c.doubt.end() ? 0 : at->second / a.tightest);
     doubt_[r] = std::max(doubt_[r], doubt);
     const bool wanted = o.check == Check::always || (o.check == Check::where_in_doubt && doubt > 0.5);
     if (wanted && !is_kept(r))

@@ -134,7 +134,7 @@ class Search : Judgement {
       if (is_local || lack == a.chosen->lack.end() || is_touched(r)) return HUGE_VAL;
       strain = std::max(strain, lack->second);
     }
-    return 10 * strain / o.tightest;
+    return 10 * strain / a.tightest;
   }
   static bool is_linear(Level l) { return fidelity(l) == Fidelity::linear; }
   /// Error of the modes that linear regions of the chosen model have: by as many again; and as many again where that is too large.

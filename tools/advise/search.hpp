@@ -10,7 +10,7 @@ namespace hilo {
 enum class Check { where_in_doubt, always, never };  // of linear strains, by cells
 
 struct SearchOptions {
-  double tightest = 0.02;        // of all tolerances, relative
+  double tightest = 0.02;        // of all relative tolerances
   std::map<size_t, Level> kept;  // regions whose level is not tried
   Check check = Check::where_in_doubt;
   bool each_region = false;  // is it asked what each region is worth?
@@ -28,7 +28,7 @@ struct Advice {
   double modes_at_most = 0;                    // what they may change, over the tightest tolerance, by the strain they lack
   std::vector<double> mesh;                    // what cells of no size would
   double doubt = 0;                            // what strains of the second degree may change of the reference, over the tightest tolerance
-  double tightest = 0;                         // that tolerance, relative
+  double tightest = 0;                         // that tolerance, relative; those in units by the values of the base
   std::map<size_t, const Candidate*> without;  // the chosen model with this region rigid
   std::vector<const Candidate*> tried;
   std::deque<Candidate> made;                                       // references that are no runs
