@@ -57,6 +57,14 @@ CheckpointPolicy policy_of(const Options& o) {
   return p;
 }
 
+/// A run to go on with is complete, and the same is asked of it.
+bool is_done(const Options& o, Comm& comm) {
+  const auto run = complete_without_checkpoint(o.restart);
+  if (!run) return false;
+  const Scene asked = o.scene.empty() ? Scene::parse(run->text, o.restart, o.overrides) : Scene::load(o.scene, o.overrides, comm);
+  return asked.values() == run->values();
+}
+
 void solve(int argc, char** argv, Comm& comm) {
   const double began = wall_clock();
   Options o;
@@ -102,6 +110,10 @@ void solve(int argc, char** argv, Comm& comm) {
     if (output->count() > 0 && o.output != o.restart)
       throw Error("", "--restart goes on in the results it names, so there is no -o",
                   fmt::format("copy {} and its checkpoints first", o.restart), Exit::usage);
+    if (is_done(o, comm)) {
+      if (talk) fmt::print(stderr, "{} is complete: nothing is left to do\n", o.restart);
+      return;
+    }
     from = read_checkpoint(o.restart, comm);
     o.output = o.restart;
     if (o.scene.empty()) {

@@ -93,10 +93,14 @@ Places places(const AtOptions& o, RunFile& run, const std::vector<bool>& wanted,
     if (outside == o.n) throw Error("--line", fmt::format("none of {} points lies in a cell that has {}", o.n, label));
     if (outside > 0) warn("--line", fmt::format("{} of {} points lie in no cell that has {}: no value there", outside, o.n, label));
   }
-  for (const Located& at : p.where)
-    for (const std::int64_t node : at.nodes)
-      if (!run.holds(node))
+  for (Located& at : p.where) {
+    for (size_t a = at.nodes.size(); a-- > 0;) {  // on a face, nodes off it have no share
+      if (run.holds(at.nodes[a])) continue;
+      if (std::abs(at.N[a]) > most_outside)
         throw Error(run.path, "holds the fields of the skin alone, and the place lies inside", "run with output.nodes = \"all\"");
+      at.nodes.erase(at.nodes.begin() + static_cast<std::ptrdiff_t>(a)), at.N.erase(at.N.begin() + static_cast<std::ptrdiff_t>(a));
+    }
+  }
   return p;
 }
 

@@ -17,6 +17,8 @@
 namespace hilo {
 namespace {
 
+constexpr const char* by_names = "--by groups by names";
+
 struct ChartOptions {
   std::vector<std::string> files, y;
   std::string x, by, log, title, x_label, y_label, size = "1280x720", png;
@@ -82,10 +84,10 @@ void run(const ChartOptions& o) {
       if (c != x && (o.by.empty() || c != table.find(o.by))) columns.push_back(c);
     if (columns.empty()) throw Error(file, "has no column to draw", "two at least: x and y");
     if (first.text.empty()) first = {table.header[x], table.path};
-    auto xs = table.numbers(x);
+    auto xs = table.numbers(x, by_names);
     for (double& value : xs) value *= unit_factor({table.header[x], table.path}, first);
     for (const size_t c : columns) {
-      const auto ys = table.numbers(c);
+      const auto ys = table.numbers(c, by_names);
       Panel& panel = panel_of(table.header[c]);
       for (const auto& [name, rows] : groups(table, o.by)) {
         ChartCurve curve;

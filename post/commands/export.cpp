@@ -91,6 +91,8 @@ void run(const ExportOptions& o) {
   if (o.output.ends_with(".gltf"))
     throw Error(o.output, "glTF is written in its binary form", "give the file the ending .glb", Exit::usage);
   const bool gltf = o.output.ends_with(".glb");
+  if (!gltf && o.output != "-" && !o.output.ends_with(".vtu"))
+    throw Error(o.output, "no format has this ending", "run.vtu, or run.glb for glTF", Exit::usage);
   for (const auto& [given, option] : {std::pair{!o.field.empty(), "--field"},
                                       {!o.range.empty(), "--range"},
                                       {!o.show.empty(), "--show"},

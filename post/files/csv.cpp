@@ -94,14 +94,14 @@ size_t CsvTable::find(const std::string& name) const {
   throw Error(path, fmt::format("no column \"{}\"", name), suggest(name, names));
 }
 
-std::vector<double> CsvTable::numbers(size_t c) const {
+std::vector<double> CsvTable::numbers(size_t c, const std::string& hint) const {
   std::vector<double> values;
   for (size_t row = 0; row < rows(); ++row) {
     const std::string& cell = column[c][row];
     double x = std::numeric_limits<double>::quiet_NaN();
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
     if (!cell.empty() && (error != std::errc() || end != cell.data() + cell.size()))
-      throw Error(path, fmt::format("\"{}\" in row {} of column \"{}\" is no number", cell, row + 1, header[c]), "--by groups by names");
+      throw Error(path, fmt::format("\"{}\" in row {} of column \"{}\" is no number", cell, row + 1, header[c]), hint);
     values.push_back(x);
   }
   return values;

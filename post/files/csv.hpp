@@ -15,7 +15,7 @@ struct CsvTable {
   /// Column of a name, with or without its unit, or of a number from 1; Error with a suggestion.
   size_t find(const std::string& name) const;
   /// A column as numbers; an empty cell is NaN, any other text an Error with its line.
-  std::vector<double> numbers(size_t column) const;
+  std::vector<double> numbers(size_t column, const std::string& hint = "") const;
   /// The same in the unit `wanted`, from that of its heading, or from `fallback` where that has none; Error where it does not fit.
   std::vector<double> numbers_in(const std::string& wanted, size_t column, const std::string& fallback, const std::string& hint) const;
 };

@@ -91,9 +91,9 @@ Column RunColumns::named(const std::string& name) {
 Column RunColumns::formula(const std::string& text) {
   const auto equals = text.find('=');
   const std::string left = trimmed_blanks(text.substr(0, equals)), right = trimmed_blanks(text.substr(equals + 1));
-  const auto bracket = left.find(" [");
-  Column c{trimmed_blanks(left.substr(0, bracket)), bracket == std::string::npos ? "1" : left.substr(bracket + 2), {}, {}};
-  if (c.unit.ends_with(']')) c.unit.pop_back();
+  const auto bracket = left.ends_with(']') ? left.rfind('[') : std::string::npos;
+  Column c{trimmed_blanks(left.substr(0, bracket)), "1", {}, {}};
+  if (bracket != std::string::npos) c.unit = left.substr(bracket + 1, left.size() - bracket - 2);
   if (c.label.empty()) throw Error("", fmt::format("\"{}\" gives its column no name", text), "NAME [UNIT] = FORMULA", Exit::usage);
   c.t = run_.store().read<double>("/history/t");
   for (size_t rows = c.t.size();; c.t.resize(rows)) {  // a run in progress may be a row ahead in one array
@@ -117,7 +117,8 @@ std::vector<Column> RunColumns::pick(const std::vector<std::string>& wanted) {
   for (const std::string& glob : wanted) {
     if (glob.find('=') != std::string::npos) {
       picked.push_back(formula(glob));
-      have.insert(picked.back().label);
+      if (!have.insert(picked.back().label).second)
+        throw Error(run_.path, fmt::format("two columns are called \"{}\"", picked.back().label), "give each its own name", Exit::usage);
       continue;
     }
     bool any = false;

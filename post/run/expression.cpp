@@ -117,11 +117,11 @@ class Parser {
       else
         return x;
   }
+  /// Every level of a formula goes through here: parentheses, arguments, signs and powers.
   Values sign() {
-    if (take('+')) return sign();
-    if (!take('-')) return power();
-    Values x = sign();
-    for (double& value : x) value = -value;
+    if (++depth_ > most_deep) fail(fmt::format("more than {} levels deep", most_deep));
+    Values x = take('+') ? sign() : take('-') ? both(Values(t_.size(), -1), sign(), std::multiplies<>()) : power();
+    --depth_;
     return x;
   }
   Values power() {
@@ -176,10 +176,12 @@ class Parser {
     fail(fmt::format("no function \"{}\"; there are {}", name, expression_functions()));
   }
 
+  static constexpr int most_deep = 256;  // as in TOML
   const std::string& text_;
   const Values& t_;
   const ColumnOf& column_;
   size_t at_ = 0;
+  int depth_ = 0;
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "model/inputs.hpp"
 #include "model/mesh_source.hpp"
 #include "model/scene_sets.hpp"
 #include "post/run/swept_beams.hpp"
@@ -135,6 +136,7 @@ void RunFile::read_skin() {
 
 RunFile judged_run(const std::string& path) {
   RunFile run(path);
+  for (const char* beside : {".json", ".xdmf"}) note_input(fs::path(path).replace_extension(beside).string());  // they are of the run
   if (run.complete) return run;
   const auto t = run.store().has("/history/t") ? run.store().read<double>("/history/t") : std::vector<double>{};
   warn(path, "the run is not complete: in progress or stopped" + (t.empty() ? "" : fmt::format(", it has come to t = {:.6g} s", t.back())));

@@ -76,15 +76,18 @@ int guarded(std::string_view tool, const std::function<void()>& body) {
     std::fputs(line.c_str(), stderr);  // does not throw when stderr is gone
     return static_cast<int>(exit);
   };
+  const auto full = [] { return std::fflush(stdout) != 0 || std::ferror(stdout) != 0; };
   try {
     body();
-    if (std::fflush(stdout) != 0) return fail(Exit::resources, "cannot write to standard output");
+    if (full()) return fail(Exit::resources, "cannot write to standard output");
     return static_cast<int>(Exit::done);
   } catch (const Error& e) {
     return fail(e.exit, e.what());
   } catch (const std::bad_alloc&) {
     return fail(Exit::resources, "out of memory");
-  } catch (const std::system_error& e) {  // a thread that could not be started
+  } catch (const std::system_error& e) {  // a print that failed, or a thread that could not be started
+    if (full()) return fail(Exit::resources, "cannot write to standard output");
+    if (std::ferror(stderr) != 0) return fail(Exit::resources, "cannot write to standard error");
     if (e.code() == std::errc::resource_unavailable_try_again || e.code() == std::errc::not_enough_memory)
       return fail(Exit::resources, "out of memory, or of processes (ulimit -v, ulimit -u)");
     return fail(Exit::fault, fmt::format("internal fault: {}", e.what()));

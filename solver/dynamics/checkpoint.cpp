@@ -179,6 +179,17 @@ Checkpoint read_checkpoint(const std::string& results, const Comm& comm) {
   }
 }
 
+std::optional<Scene> complete_without_checkpoint(const std::string& results) {
+  std::error_code ignored;
+  for (const std::string& path : {newest(results), former(results)})
+    if (fs::exists(path, ignored)) return {};
+  if (!results.ends_with(".h5") || !fs::exists(results, ignored)) return {};
+  const Store f = Store::open(results);
+  if (f.text_attribute("/", "format") != "hilo run" || f.number_attribute("/", "complete") != 1.0) return {};
+  release_input(results);
+  return Scene::parse(f.read_text("/scene"), results);
+}
+
 namespace {
 
 /// "key = value" of each.

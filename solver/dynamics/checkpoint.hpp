@@ -66,6 +66,8 @@ struct Checkpoint {
 };
 /// Error (exit 2) where there is none.  The same on all ranks.
 Checkpoint read_checkpoint(const std::string& results, const Comm& comm);
+/// The results are complete and no checkpoint lies beside them, as a run leaves them: the scene that was run, else nothing.
+std::optional<Scene> complete_without_checkpoint(const std::string& results);
 /// Why a scene cannot go on from there: the first key that differs and may not, as an Error with its place; what may differ is another end
 /// not before the checkpoint, other output, looser tolerances, another solver.  The others as warnings where `accept`.
 void require_same(const Checkpoint& from, const Scene& scene, const std::string& mesh, bool accept);

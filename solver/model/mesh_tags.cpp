@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "base/error.hpp"
 #include "base/joined.hpp"
@@ -26,6 +27,7 @@ Vec3 read_point(const toml::node& node) {
   for (int i = 0; i < 3; ++i) {
     const auto number = (*list)[i].value<double>();
     if (!number) throw Error(place_text((*list)[i]), fmt::format("wanted a number, not {}", type_word((*list)[i])));
+    if (!std::isfinite(*number)) throw Error(place_text((*list)[i]), "a corner of a box is three finite numbers");
     x[i] = *number;
   }
   return x;
@@ -155,7 +157,7 @@ TagRule tag_rule_of_option(Fidelity fidelity, const std::string& option, const s
     double& x = i < 3 ? rule.low[i] : rule.high[i - 3];
     const auto [end, error] = std::from_chars(at, word.data() + word.size(), x);
     const bool last = end == word.data() + word.size();
-    if (error != std::errc() || last != (i == 5) || (!last && *end != ','))
+    if (error != std::errc() || !std::isfinite(x) || last != (i == 5) || (!last && *end != ','))
       throw Error(rule.where, "wanted box:x,y,z,x,y,z", "", Exit::usage);
     at = end + 1;
   }
@@ -175,8 +177,7 @@ std::vector<std::optional<Fidelity>> apply_tag_rules(const Mesh& mesh, const Tag
       throw Error(rule.where, described(rule), rule.by == TagRule::By::name ? hint : "");
     }
     for (const int r : regions) {
-      const auto is_name = [&](const TagRule& t) { return t.by == TagRule::By::name && t.pattern == mesh.region_name[r]; };
-      if (by[r] && (by[r]->fidelity != rule.fidelity || (is_name(*by[r]) && is_name(rule))))
+      if (by[r] && by[r]->fidelity != rule.fidelity)
         throw Error(rule.where, fmt::format("region \"{}\" is tagged twice: {} here, {} at {}", mesh.region_name[r], word(rule.fidelity),
                                             word(by[r]->fidelity), by[r]->where));
       by[r] = &rule;

@@ -102,6 +102,20 @@ TEST_F(Stopped, GoesOnToTheSameNumbersAndToALaterEnd) {
   EXPECT_NE(work.run("hilo-show run.h5").out.find("--set time.end=0.5"), std::string::npos);
 }
 
+/// As a script does that goes on until a run is done; by default no checkpoint stays.
+TEST_F(Stopped, ACompleteRunHasNothingLeftToDo) {
+  ASSERT_EQ(work.run("hilo-solve scene.toml --quiet --set time.end=0.1").exit, 0);
+  const std::string before = text_of(work / "run.h5");
+  for (const char* how : {"", "scene.toml --set time.end=0.1"}) {
+    const auto o = work.run(std::string("hilo-solve --restart run.h5 ") + how);
+    EXPECT_EQ(o.exit, 0) << o.err;
+    EXPECT_NE(o.err.find("run.h5 is complete: nothing is left to do"), o.err.npos) << o.err;
+  }
+  EXPECT_EQ(text_of(work / "run.h5"), before);
+  refused("hilo-solve --restart run.h5 --set time.end=0.2", input,
+          "run.h5: no checkpoint lies beside it (run.checkpoint.h5 is not there; see --checkpoint)");
+}
+
 /// A second pass makes its results anew, and its checkpoints.
 TEST_F(Stopped, PassesOfAToleranceKeepTheirOwnCheckpoints) {
   const std::string solve = "hilo-solve scene.toml --set time.end=3 --set time.tolerance=1e-5 ";

@@ -178,6 +178,27 @@ TEST(At, ALineHasNoValuesInAGap) {
   EXPECT_EQ(place.run("hilo-post at run.h5 von_mises --line 1.2,0,0 1.8,0,0").exit, 2);
 }
 
+// A bar pulled along x: u = F X/(E A) on its faces, whose cells have nodes inside the bar as well.
+TEST(At, PlacesOnTheSurfaceAreInARunOfTheSkin) {
+  const Workplace place;
+  const Mesh mesh = two_blocks(3);
+  write_mesh(place / "mesh.h5", mesh, {"test"});
+  place.write("scene.toml", solid(1e6, 0, 1000) +
+                                "[set.foot]\nbox = [[-1, -1, -1], [1e-6, 2, 2]]\n[set.end]\nbox = [[0.999, -1, -1], "
+                                "[1.001, 2, 2]]\n" +
+                                held("foot") + held("arm") + push("end", Vec3(10, 0, 0)) + in_steps(1) + "[output]\nnodes = \"skin\"\n");
+  succeeded(place.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5"));
+  const auto at = [&](const std::string& where) {
+    return place.run("hilo-post at run.h5 displacement.x --unit m --steps last " + where + " -o out.csv");
+  };
+  for (const char* where : {"0.5,0.5,0", "0.5,0.5,1", "0.5,0.2,0", "0.5,0,0.45"}) {
+    succeeded(at(std::string("--point ") + where), where);
+    EXPECT_NEAR(read_csv(place / "out.csv").numbers(1).front(), 0.5e-5, 1e-8) << where;
+  }
+  succeeded(at("--line 0.1,0.5,1 0.9,0.5,1 -n 9"));
+  expect_end(at("--point 0.5,0.5,0.5"), 2, "the place lies inside");
+}
+
 TEST(At, RefusesWhatItCannotAnswer) {
   const Workplace place;
   run_of_blocks(place);

@@ -94,6 +94,20 @@ TEST(Expression, WhatIsNoFormulaIsToldWithItsColumn) {
     }
 }
 
+// Each level is a call within calls: without a limit a long formula ends the program.
+TEST(Expression, NestingHasALimit) {
+  EXPECT_EQ(value(std::string(250, '(') + "t" + std::string(250, ')')), times);
+  EXPECT_EQ(value(std::string(250, '-') + "t"), times);
+  std::string powers = "1", calls = "t";
+  for (int k = 0; k < 20000; ++k) powers += "^1", calls = "abs(" + calls;
+  for (const std::string& deep : {std::string(20000, '(') + "t", std::string(20000, '-') + "t", powers, calls}) try {
+      value(deep);
+      ADD_FAILURE();
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("more than 256 levels deep"), std::string::npos);
+    }
+}
+
 const Workplace& sample_place() {
   static const Workplace place;
   static const std::string run = sample::write_run(place.path(), sample::cube(2), 1);
@@ -119,6 +133,10 @@ TEST(SeriesFormula, ColumnsAreTheFormulaOfWhatIsStoredOverTheAbscissaAskedFor) {
 }
 
 // Truth: a ramp of 1 N/s and the root of a time that is negative at first hold nothing above what steps of 0.5 ms resolve.
+TEST(SeriesFormula, AUnitNeedsNoBlankBeforeIt) {
+  EXPECT_EQ(succeeded(sample_place().run("hilo-post series run.h5 'x[mm] = t' -o -")).out.rfind("t [s],x [mm]\n", 0), 0u);
+}
+
 TEST(SeriesFormula, RowsWithoutAValueGiveNoWarning) {
   for (const char* formula : {"a [N] = d(t^2/2)", "a [N] = sqrt(t - 0.05)"}) {
     const Ran ran = post(fmt::format("series run.h5 '{}' -o none.csv", formula));
