@@ -30,7 +30,7 @@ struct Block {
 };
 
 /// Takes a tangent, and finds how far from a body's centre what resists its turns acts: of a point mass on a beam, this is no small part of
-/// the beam, though the body itself has no size.
+/// the beam, though the body itself has no size.  At most the length of the scene: a row of turns alone has round-off for moves.
 class Reach final : public TangentReader {
  public:
   explicit Reach(const System& system) : system_(system), arm(system.bodies.size(), 0.0) {
@@ -48,7 +48,7 @@ class Reach final : public TangentReader {
       if (centre == n) continue;
       double& most = arm[centre_of_[list[turn]]];
       const auto take = [&](double turns, double moves) {
-        if (moves > 0) most = std::max(most, turns / moves);
+        if (moves > 0) most = std::max(most, std::min(turns / moves, system_.length));
       };
       take(std::sqrt(K.block<3, 3>(3 * turn, 3 * turn).norm()), std::sqrt(K.block<3, 3>(3 * centre, 3 * centre).norm()));
       for (Eigen::Index row = 0; row < n; ++row)

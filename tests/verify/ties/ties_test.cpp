@@ -222,6 +222,21 @@ TEST(Ties, LinearRegionsRingAsCellsDo) {
   }
 }
 
+// Truth: Timoshenko's cantilever, F L^3/(3 E I) + F L/(k A G).  Its outer part hangs on the tie alone.
+TEST(Ties, ALinearPartThatHangsOnOneIsHeld) {
+  using enum Shape;
+  const Mesh mesh = together(block_mesh({.shape = hex20r, .n = {4, 1, 1}, .high = {1, 0.1, 0.1}, .regions = {"A"}}),
+                             block_mesh({.shape = tet10, .n = {3, 2, 2}, .low = {1, 0, 0}, .high = {1.5, 0.1, 0.1}, .regions = {"B"}}));
+  const double E = 2e11, F = 1000, L = 1.5, I = std::pow(0.1, 4) / 12;
+  const double truth = F * L * L * L / (3 * E * I) + F * L / (5. / 6 * 0.01 * E / 2);
+  for (const bool turned : {false, true}) {
+    SceneCase c(solid(E, 0, 8000) + (turned ? tie("Bxmin", "Axmax") : tie("Axmax", "Bxmin")) + held("Axmin") +
+                force("down", "Bxmax", {0, 0, F}) + probe("tip", "Bxmax") + in_steps(1));
+    c.use(mesh, {Fidelity::nonlinear, Fidelity::linear});
+    EXPECT_NEAR(c.solved().at("probe/tip", 1)[2] - 0.05, truth, 0.01 * truth) << turned;  // few cells
+  }
+}
+
 // Three blocks about an edge: its nodes are of two ties, and some of them are held.  Truth: uniform stress.
 TEST(Ties, OfAnEdgeAndOfHeldNodes) {
   Mesh m = together(block_mesh({.n = {3, 2, 1}, .high = {1, 1, 0.5}, .regions = {"A"}}),
