@@ -16,6 +16,7 @@ constexpr double of_largest = 0.1;  // of the largest way foreseen, and
 constexpr double backwards = -0.3;  // cosine between the way and what a tangent foresees
 constexpr double of_length = 1e-5;  // of the scene: shorter ways are nothing
 constexpr double of_force = 1e-3;   // of the largest force: a residual below it is balance
+constexpr double of_rows = 1e-6;    // of the scene: rows that are open farther hold nothing yet
 
 /// How far points of a configuration go by a change of it, one after the other: nodes, centres, and directors at the sizes of their bodies.
 template <class Visit>
@@ -53,8 +54,10 @@ Residual BranchJump::evaluate(const Config& q, const Loaded& state, const Loaded
   return r;
 }
 
-/// Whether a state is in balance under its own loads, at the forces of another.
+/// Whether a state is in balance under its own loads, at the forces of another, its rows closed: those of a linear region are open where a
+/// motion begins away from the drawing.
 bool BranchJump::balanced(const Loaded& at, const Loaded& other) {
+  if (system_.violation(at.q, at.t, at.ramp).kept > of_rows * system_.length) return false;
   system_.commit(at.q);
   Residual r = evaluate(at.q, at, at, false);
   r.force_scale = std::max(r.force_scale, evaluate(other.q, other, other, false).force_scale);

@@ -12,6 +12,7 @@
 #include "dynamics/profile.hpp"
 #include "dynamics/redundancy/contradiction.hpp"
 #include "dynamics/run_parts.hpp"
+#include "dynamics/start/moved_start.hpp"
 #include "dynamics/start/start.hpp"
 #include "system/linear_regions.hpp"
 #include "system/modal_damping.hpp"
@@ -190,7 +191,19 @@ class Run {
   void start_state() {
     run_.state.q = run_.system.start;
     run_.state.v = run_.system.start_velocity;
-    run_.system.prescribe(run_.state.q, 0, is_static() && !run_.scene.table("time").has("end") ? 0 : 1);
+    run_.system.prescribe(run_.state.q, 0, start_factor());
+  }
+  double start_factor() const { return is_static() && !run_.scene.table("time").has("end") ? 0 : 1; }
+
+  void tell_torn(const std::vector<std::string>& motions) const {
+    const Entry& time = run_.scene.table("time");
+    if (motions.empty() || is_static() || (time.has("start") && time.text("start") == "equilibrium") || run_.system.comm->rank != 0) return;
+    for (const Entry& e : run_.scene.entries("motion"))
+      if (e.name == motions.front())
+        warn(e.where("on"),
+             fmt::format("{}{} begins away from the drawing, and what else holds its region does not move with it: cells between begin "
+                         "strained (time.start = \"equilibrium\", or histories that begin at 0)",
+                         e.label(), motions.size() > 1 ? fmt::format(", with {} more,", motions.size() - 1) : ""));
   }
 
   /// The integrator of the pass at work.
@@ -209,6 +222,10 @@ class Run {
   void prepare() {
     System& system = run_.system;
     State& state = run_.state;
+    const MovedStart moved = begin_moved(system, state.q, start_factor());
+    tell_torn(moved.torn);
+    if (run_.talk && moved.way > 0)
+      fmt::print(stderr, "what motions hold away from the drawing begins moved with them, by up to {:.3g} m\n", moved.way);
     if (const auto carry = system.search(state.q, is_static() ? nullptr : &state.v, 0)) run_.follow(*carry);
     if (!is_static() && system.violation(state.q, 0).worst() > 1e-11 * std::max(1.0, system.length)) {
       const std::vector<Active> rows = active_rows(system);
