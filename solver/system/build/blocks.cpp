@@ -143,6 +143,7 @@ void Builder::make_blocks() {
     if (linear >= 0 && bodies.empty() && of_nonlinear[b] == 0 && is_held[b] == 0 && !has_body) continue;  // its reduction has the block
     const bool has_free = bodies.erase(-1) > 0, is_alone = bodies.empty();
     if (has_body) bodies.insert(named->second);
+    if (!bodies.empty()) body_of[b] = *bodies.begin();
     const auto still = [&](int body) { return out_->bodies[body].ground || (out_->bodies[body].held && !out_->bodies[body].moving); };
     if (bodies.size() > 1 && !std::ranges::all_of(bodies, still))
       refuse(b, fmt::format("and belong to \"{}\" and \"{}\"", out_->bodies[*bodies.begin()].name, out_->bodies[*bodies.rbegin()].name),
@@ -155,7 +156,7 @@ void Builder::make_blocks() {
     S = S / m[0] - mean * mean.transpose();
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(S);
     const double size = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
-    int body = bodies.empty() ? -1 : *bodies.begin();
+    int& body = body_of[b];
     if (body < 0) {
       body = new_body(mesh.block_name[b], mesh.block_at[b]);
       out_->bodies[body].patch = out_->bodies[body].block = true;
@@ -163,7 +164,6 @@ void Builder::make_blocks() {
     if (out_->bodies[body].mass == 0 && out_->bodies[body].free()) out_->bodies[body].size = std::max(size, 1e-9 * out_->length);
     if (is_alone && eigen.eigenvalues()[1] < on_line * on_line * eigen.eigenvalues()[2])
       out_->bodies[body].line = eigen.eigenvectors().col(2);
-    body_of[b] = body;
     if (linear < 0) {
       out_->bodies[body].has_cells = true;
       continue;
@@ -213,6 +213,16 @@ void Builder::hold_blocks(const std::vector<int>& body_of) {
                   fmt::format("motion \"{}\" moves single components of nodes of {}, which move as one", m.name, mesh.block_name[number]),
                   "all three, or a joint");
     const Body& body = out_->bodies[body_of[number]];
+    if (body.moving) {
+      const Motion& by = *std::ranges::find(motions, body_of[number], &Motion::body);
+      for (int c = 0; c < 3; ++c)
+        if (m.component[c] && (by.angle != 0 || by.displacement[c] != 0))
+          throw Error(scene_.path,
+                      fmt::format("motion \"{}\" holds single components of nodes of {}, which motion \"{}\" moves", m.name,
+                                  mesh_->mesh.block_name[number], by.name),
+                      "name a set without these nodes");
+    }
+    if (!body.free()) continue;  // it cannot move there
     if (block != b) rows.emplace(body.size), block = b;
     for (int c = 0; c < 3; ++c)
       if (const Vec3 at(x, y, z); m.component[c] && rows->is_new(at - body.Xc, c)) wanted[{k, b}].emplace_back(at, c);
