@@ -112,10 +112,12 @@ class Dividing {
         cells.add_cell(static_cast<Shape>(m.shape[c]), m.cell(c), m.region[c], m.cell_id[c]);
     std::int64_t id = *std::ranges::max_element(m.cell_id);
     for (auto& [c, of] : children_) {
+      const bool is_plain = std::ranges::all_of(of, [&](const auto& piece) { return piece[1] >= first_new_; });
       const ThinSection whole = in_.thin.at(c);
       in_.thin.at(c) = child(whole, 0, of.size());
       for (size_t k = 1; k < of.size(); ++k) {
         behind_[c].push_back(cells.n_cells());
+        if (is_plain) in_.piece_of[cells.n_cells()] = c;
         cells.add_cell(quad4, of[k], m.region[c], ++id);
         in_.thin.emplace(behind_[c].back(), child(whole, k, of.size()));
       }

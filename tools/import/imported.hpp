@@ -83,6 +83,7 @@ struct Imported {
   std::map<std::int64_t, ThinSection> thin;  // of the cells that are shells or beams
   std::int64_t n_beams = 0;                  // elements that are beams of the scene
   // with --thicken, of nodes of shells
+  std::map<std::int64_t, std::int64_t> piece_of;     // of a cell cut along its chords: its first piece
   std::shared_ptr<const Sheets> sheets;              // of the deck's shells
   std::map<std::int64_t, unsigned> held;             // components that supports hold by themselves, bits 0 to 5
   std::map<std::int64_t, std::string> body_of_node;  // the body that the deck's scene has of one: all its pairs move with it

@@ -34,7 +34,7 @@ struct Shell {
 
 class Finding {
  public:
-  explicit Finding(const Imported& in) : m_(in.mesh) {
+  explicit Finding(const Imported& in) : m_(in.mesh), piece_of_(in.piece_of) {
     for (const auto& [c, section] : in.thin) {
       if (info(m_.shape[c]).dimension != 2) continue;
       const auto n = m_.cell(c);
@@ -54,7 +54,8 @@ class Finding {
       if (sides.size() == 2 && cosine(sides) < -std::cos(least_open)) folded.push_back(shells_[sides[1].shell].cell);
     turn_alike();
     for (const auto& [edge, sides] : edges_)
-      if (is_smooth(sides) && turned_[sides[0].shell] == (turned_[sides[1].shell] != against(sides))) join(sides[0], sides[1]);
+      if (is_smooth(sides) && turned_[sides[0].shell] == (turned_[sides[1].shell] != against(sides)))
+        smooth_.insert(edge), join(sides[0], sides[1]);
     for (size_t s = 0; s < shells_.size(); ++s) turned[shells_[s].cell] = turned_[s];
     collect(at);
   }
@@ -116,6 +117,60 @@ class Finding {
     }
   }
 
+  Vec3 normal(size_t shell) const { return (turned_[shell] ? -1 : 1) * shells_[shell].normal; }
+
+  /// The turn from the edge of a shell, where the surface ends, to its normal, which is that of its middle: half of the turn to the next
+  /// shell in the row, so that a pair at a plane of symmetry lies in it.  A bend that the third shell does not go on with is a corner.
+  Vec3 turn_from_border(Side s) const {
+    struct Facet {
+      std::int64_t cell;
+      Vec3 normal;
+      double width;
+    };
+    std::vector<Facet> row;
+    for (;;) {
+      const Shell& shell = shells_[s.shell];
+      if (shell.corners != 4) break;
+      const auto n = m_.cell(shell.cell);
+      const auto end = [&](int k) { return n[(s.k + k) % 4]; };
+      const double width = (m_.X[end(2)] + m_.X[end(3)] - m_.X[end(0)] - m_.X[end(1)]).norm() / 2;
+      const auto piece = piece_of_.find(shell.cell);
+      const auto cell = piece == piece_of_.end() ? shell.cell : piece->second;
+      if (!row.empty() && row.back().cell == cell)
+        row.back().width += width;
+      else if (row.size() == 3)
+        break;
+      else
+        row.push_back({cell, normal(s.shell), width});
+      const Edge far = std::minmax(end(2), end(3));
+      if (!smooth_.contains(far)) break;
+      const auto& sides = edges_.at(far);
+      s = sides[sides[0].shell == s.shell ? 1 : 0];
+    }
+    if (row.size() < 3) return Vec3::Zero();
+    const auto bend = [&](size_t i) {  // per length
+      const Vec3 across = row[i].normal.cross(row[i + 1].normal);
+      const double turn = std::atan2(across.norm(), row[i].normal.dot(row[i + 1].normal));
+      return Vec3((turn > 1e-9 ? turn : 0) / ((row[i].width + row[i + 1].width) / 2) * across.normalized());
+    };
+    const Vec3 first = bend(0), second = bend(1);
+    if (first.isZero(0)) return first;
+    return std::clamp(second.dot(first) / first.squaredNorm(), 0.0, 1.0) * row[0].width / 2 * first;
+  }
+
+  /// The normal of a shell at one of its nodes.
+  Vec3 normal_at(size_t shell, std::int64_t node) const {
+    const int n = shells_[shell].corners;
+    const auto nodes = m_.cell(shells_[shell].cell);
+    const auto a = static_cast<int>(std::ranges::find(nodes, node) - nodes.begin());
+    Vec3 turn = Vec3::Zero();
+    for (const int k : {a % n, (a + n - 1) % n})
+      if (k == a % n || a < n)
+        if (const auto& sides = edges_.at(std::minmax(nodes[k], nodes[(k + 1) % n])); sides.size() == 1) turn += turn_from_border(sides[0]);
+    if (turn.isZero(0)) return normal(shell);
+    return Eigen::AngleAxisd(-turn.norm(), turn.normalized()) * normal(shell);
+  }
+
   size_t slot(size_t shell, int local) const { return first_[shell] + static_cast<size_t>(local); }
   void join(const Side& a, const Side& b) {
     for (int which = 0; which < 3; ++which) {
@@ -137,19 +192,18 @@ class Finding {
       for (const auto& [root, shells] : by_root) {
         const auto part = [&](const std::vector<size_t>& of) {
           Sheets::Part p;
-          for (const size_t s : of) p.cells.push_back(shells_[s].cell), p.normal += (turned_[s] ? -1 : 1) * shells_[s].normal;
+          for (const size_t s : of) p.cells.push_back(shells_[s].cell), p.normal += normal_at(s, node);
           p.normal.normalize();
           const auto n = m_.cell(shells_[of[0]].cell);
           p.thickness = thickness(of[0], static_cast<int>(std::ranges::find(n, node) - n.begin()));
           p.offset = (turned_[of[0]] ? -1 : 1) * shells_[of[0]].section->offset;
           return p;
         };
-        const auto whole = part(shells);
-        bool is_one = true;
-        for (const size_t s : shells)
-          is_one = is_one && (turned_[s] ? -1 : 1) * shells_[s].normal.dot(whole.normal) > std::cos(most_bend / 2);
-        if (is_one)
-          parts[shells[0]] = whole;
+        Vec3 mean = Vec3::Zero();
+        for (const size_t s : shells) mean += normal(s);
+        mean.normalize();
+        if (std::ranges::all_of(shells, [&](size_t s) { return normal(s).dot(mean) > std::cos(most_bend / 2); }))
+          parts[shells[0]] = part(shells);
         else  // the tip of a cone: each on its own
           for (const size_t s : shells) parts[s] = part({s});
       }
@@ -158,9 +212,11 @@ class Finding {
   }
 
   const Mesh& m_;
+  const std::map<std::int64_t, std::int64_t>& piece_of_;
   std::vector<Shell> shells_;
   std::vector<bool> turned_;
   std::map<Edge, std::vector<Side>> edges_;
+  std::set<Edge> smooth_;      // across which sheets go on
   std::vector<size_t> first_;  // of the nodes of all shells, one after the other
   Joined<size_t> joined_{0};   // these nodes
 };

@@ -20,7 +20,7 @@ class Sheets {
   /// A sheet at a node.
   struct Part {
     std::vector<std::int64_t> cells;
-    Vec3 normal = Vec3::Zero();  // the mean of theirs
+    Vec3 normal = Vec3::Zero();  // the mean of theirs; where the surface ends, of theirs as turned there
     double thickness = 0, offset = 0;
   };
   explicit Sheets(const Imported& in);
