@@ -100,7 +100,7 @@ class ModeSteps final : public Steps {
     check_rest(modes, system.largest_rate(relative.a));
     if (spins) modes = whirling_modes(system, *run_.solver, rest, modes, wanted);
     if (modes.empty()) throw Error(time_.where("analysis"), "nothing that has mass can move: there are no modes");
-    tell_stuck(modes);
+    tell_stuck(modes), tell_centrifugal();
     for (const FoundMode& m : modes) record(m);
     run_.lists.emplace_back("modes", as_json(modes));
     run_.report.table = as_table(modes, system.mass);
@@ -122,6 +122,17 @@ class ModeSteps final : public Steps {
     }
     for (const char on : system.rows_on()) held += on != 0;
     return n > held;
+  }
+  /// The force grows as its points move away from the axis, which takes speed^2 M off the stiffness across the axis.
+  void tell_centrifugal() const {
+    const auto softens = [](const Entry& e) { return e.text("card").starts_with("spin softening"); };
+    if (std::ranges::any_of(run_.scene.entries("left_out"), softens)) return;  // told of already
+    for (const Entry& load : run_.scene.entries("load"))
+      if (load.kind == "centrifugal")
+        warn(load.place.text(),
+             fmt::format("{}: the model lacks spin softening: the load acts where things are drawn, and frequencies of motions across its "
+                         "axis come out too high",
+                         load.label()));
   }
   /// At rest friction of joints is a damper that lets nothing swing: a joint that sticks.
   void tell_stuck(const std::vector<FoundMode>& modes) const {
