@@ -58,7 +58,9 @@ KindSchema time_schema() {
       {"integrator", text, "", integrator_words()[0].name, methods()}};
   for (const Param& p : keys_of_methods()) keys.push_back(p);
   keys.push_back({"steps", number, "1", "1",
-                  "load steps of a static analysis; of a path, about how many the whole load would need at first", from_to(1, 1e6)});
+                  "load steps of a static analysis, over which gravity and loads without a history grow; of a path, about how many the "
+                  "whole load would need at first",
+                  from_to(1, 1e6)});
   keys.push_back({"reach", number, "m", "", "displacement at which a path ends; without, it ends where it has the whole load", above(0)});
   keys.push_back({"modes", number, "1", "10", "how many modes an analysis of modes or buckling looks for, the lowest", from_to(1, 1000)});
   keys.push_back({"analysis", text, "", "dynamic",

@@ -331,7 +331,8 @@ Registry<JointKind>& joint_kinds() {
              both,
              read_gear},
             {"rack",
-             "slide of b goes with the angle of a, the pinion; bearings and guides are joints of their own (1 row)",
+             "slide of b goes with the angle of a, the pinion; bearings and guides are joints of their own (1 row, a force on b, whose "
+             "opposite acts on the carrier)",
              giving_way_along(joint_keys(true, {{"direction", vector3, "1", "!",
                                                  "direction in the carrier along which b moves when a turns positively about `axis`"},
                                                 {"radius", number, "m", "!", "pitch radius: slide per angle", above(0)},

@@ -117,6 +117,32 @@ TEST(ErrorEstimate, BesideAFastRotorIsLostAndTold) {
 }
 
 // Truth: a body in free rotation under no force keeps its angular momentum; a hundred seconds at 1e-6 take seconds.
+// A mass between two springs with a gap: flights at 1.3 m/s and half waves; the kinks leave second order to methods of fifth and sixth.
+TEST(ErrorEstimate, BesideKinksIsNoLessThanTheError) {
+  const double v = 1.3, gap = 0.1, w = std::sqrt(2000.0), flight = 2 * gap / v, wave = std::numbers::pi / w;
+  const auto exact = [&](double t) {
+    double at = t + flight / 2;  // from the left spring on
+    double sign = 1;
+    for (; at > flight + wave; at -= flight + wave) sign = -sign;
+    return sign * (at < flight ? -gap + v * at : gap + v / w * std::sin(w * (at - flight)));
+  };
+  const Workplace place;
+  place.write("gap.toml",
+              "body=[{name=\"a\",mass=1,com=[0,0,0],inertia=[2e-2,0.08,0.09]}]\n"
+              "joint=[{kind=\"prismatic\",name=\"j\",b=\"a\",at=[0,0,0],axis=[1,0,0]}]\n"
+              "spring=[{kind=\"curve\",name=\"c\",a=\"ground\",b=\"a\",at_a=[-1,0,0],at_b=[0,0,0],extension=[-0.6,-0.1,0.1,0.6],"
+              "force=[-1000,0,0,1000]}]\n"
+              "initial=[{on=[\"a\"],velocity=[1.3,0,0]}]\ntime={end=3,step=0.01}\n");
+  for (const char* options : {"gauss\"' --set time.step=0.02", "gauss\"' --set time.step=0.005", "radau\"' --set time.step=0.0011"}) {
+    succeeded(place.run(std::string("hilo-solve --quiet gap.toml -o gap.h5 --set 'time.integrator=\"") + options));
+    const Results r(place / "gap.h5");
+    const Eigen::VectorXd x = r.history("coordinate/j").col(0), t = r.t();
+    double worst = 0;
+    for (Eigen::Index i = 0; i < t.size(); ++i) worst = std::max(worst, std::abs(x[i] - exact(t[i])));
+    EXPECT_GT(number_of(place, "gap.json", "largest"), 0.7 * worst) << options;
+  }
+}
+
 TEST(ErrorEstimate, FreeBodyForAHundredSeconds) {
   const Workplace w;
   w.write("scene.toml", body("brick", 2, Vec3::Zero(), Vec3(0.02, 0.05, 0.06)) + R"(
