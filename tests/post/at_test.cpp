@@ -183,10 +183,11 @@ TEST(At, PlacesOnTheSurfaceAreInARunOfTheSkin) {
   const Workplace place;
   const Mesh mesh = two_blocks(3);
   write_mesh(place / "mesh.h5", mesh, {"test"});
-  place.write("scene.toml", solid(1e6, 0, 1000) +
-                                "[set.foot]\nbox = [[-1, -1, -1], [1e-6, 2, 2]]\n[set.end]\nbox = [[0.999, -1, -1], "
-                                "[1.001, 2, 2]]\n" +
-                                held("foot") + held("arm") + push("end", Vec3(10, 0, 0)) + in_steps(1) + "[output]\nnodes = \"skin\"\n");
+  const auto box = [](const char* name, double low, double high) {
+    return fmt::format("[set.{}]\nkind = \"box\"\nlow = [{}, -1, -1]\nhigh = [{}, 2, 2]\n", name, low, high);
+  };
+  place.write("scene.toml", solid(1e6, 0, 1000) + box("foot", -1, 1e-6) + box("end", 0.999, 1.001) + held("foot") + held("arm") +
+                                push("end", Vec3(10, 0, 0)) + in_steps(1) + "[output]\nnodes = \"skin\"\n");
   succeeded(place.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5"));
   const auto at = [&](const std::string& where) {
     return place.run("hilo-post at run.h5 displacement.x --unit m --steps last " + where + " -o out.csv");
