@@ -196,7 +196,11 @@ void RegionMeasures::observe(const Sight& seen) {
 /// What is told at the end, with what to do; a region that stiffens has strains of the second degree.
 void RegionMeasures::add_to_report(Json& run) const {
   constexpr double much_lacking = 0.05, wide_band = 0.5, much_with_band = 0.02, much_quadratic = 0.1, much_growth = 1.1,
-                   much_shortening = 0.012;
+                   much_shortening = 0.012, much_for_modes = 1.02;
+  const double much = of_modes_ ? much_for_modes : much_growth;
+  const auto of_vibrations = [&](const char* shift) {
+    return of_modes_ ? fmt::format(", and its frequencies are too {}", shift) : std::string();
+  };
   const auto& linear = system_.part<LinearRegions>();
   Table table;
   table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling", "tension",
@@ -262,15 +266,16 @@ void RegionMeasures::add_to_report(Json& run) const {
              fmt::format("its supports stretch it as it bends: strains of the second degree are {:.2g} of its strain (norm of energy) at t "
                          "= {:.4g} s, and linear ones leave them out ({})",
                          quadratic, r.quadratic.t, m.better()));
-    if (r.growth.value > much_growth)
-      leaves("buckling", r.growth.value, much_growth, r.share.t,
-             fmt::format("bears {:.2g} of its buckling load at t = {:.4g} s: linear strains leave out that it gives way {} ({})", share,
-                         r.share.t, share < 1 ? fmt::format("{:.3g} times as far", r.growth.value) : "without end", m.better()));
-    if (r.tension.value > much_growth)
-      leaves("tension", r.tension.value, much_growth, r.tension.t,
+    if (r.growth.value > much)
+      leaves("buckling", r.growth.value, much, r.share.t,
+             fmt::format("bears {:.2g} of its buckling load at t = {:.4g} s: linear strains leave out that it gives way {}{} ({})", share,
+                         r.share.t, share < 1 ? fmt::format("{:.3g} times as far", r.growth.value) : "without end", of_vibrations("high"),
+                         m.better()));
+    if (r.tension.value > much)
+      leaves("tension", r.tension.value, much, r.tension.t,
              fmt::format("is pulled: linear strains leave out that this stiffens it, so that it bends {:.3g} times as far, at t = "
-                         "{:.4g} s ({})",
-                         r.tension.value, r.tension.t, m.better()));
+                         "{:.4g} s{} ({})",
+                         r.tension.value, r.tension.t, of_vibrations("low"), m.better()));
     if (shortening > much_shortening)
       leaves("shortening", shortening, much_shortening, r.shortening.t,
              fmt::format("bends so fast that its ends come nearer with {:.3g} m/s^2 at t = {:.4g} s, {:.2g} of its largest acceleration: "

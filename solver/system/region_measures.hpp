@@ -30,8 +30,9 @@ namespace hilo {
 
 class RegionMeasures final : public Contribution, public Observer {
  public:
-  /// `of_shapes`: it sees shapes, whose size says nothing.
-  RegionMeasures(const System& system, bool of_shapes) : system_(system), of_shapes_(of_shapes) {}
+  /// Of modes and of buckling it sees shapes, whose size says nothing.
+  RegionMeasures(const System& system, const std::string& analysis)
+      : system_(system), of_modes_(analysis == "modes"), of_shapes_(of_modes_ || analysis == "buckling") {}
 
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
@@ -66,7 +67,7 @@ class RegionMeasures final : public Contribution, public Observer {
   static double shortening(Region& at, double t, const Eigen::VectorXd& s, const Eigen::VectorXd& speed);
   void look_at_stress(const Sight& seen);
   const System& system_;
-  const bool of_shapes_;
+  const bool of_modes_, of_shapes_;
   std::vector<Region> regions_;
   std::optional<StressOverYield> stress_;
 };

@@ -68,7 +68,7 @@ void Builder::add_contributions() {
   s.add<Stations>(s);
   s.add<JointCoordinates>();
   const std::string& analysis = scene_.table("time").text("analysis");
-  s.add<RegionMeasures>(s, analysis == "modes" || analysis == "buckling");
+  s.add<RegionMeasures>(s, analysis);
   s.add<ModalDamping>(s);
   if (analysis == "modes") s.add<ModeOutput>(static_cast<int>(scene_.table("time").number("modes")));
   if (analysis == "buckling") s.add<BucklingModes>();

@@ -151,6 +151,33 @@ TEST_F(LinearMeasures, WhatIsPulledWhileItBendsTellsThatItStiffens) {
   }
 }
 
+// A pinned beam under the share p of Euler's load rings with sqrt(1 + p) times its first frequency, p > 0 where it is pulled.  Cells and
+// strains of the second degree have that; linear strains do not, and tell it.
+TEST_F(LinearMeasures, ModesOfWhatIsPulledOrPressedTellThatTheyLackIt) {
+  const double euler = pi * pi * E * I / (L * L);
+  sag_by = "gravity = [0, 0, 0]";
+  const auto first = [&](double share, bool stiffens, std::string& said) {
+    c.use(mesh, {Fidelity::linear});
+    std::ofstream(c / "scene.toml") << fmt::format(
+                                           "[material.m]\nE = {}\nnu = 0\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n"
+                                           "stiffening = {}\n",
+                                           E, stiffens)
+                                    << pins << push(-share * euler) << "[time]\nanalysis = \"modes\"\nmodes = 1\nstart = \"equilibrium\"\n";
+    said = succeeded(c.run("hilo-solve scene.toml tags.h5 -o run.h5")).err;
+    return c.results().history("mode")(1, 0);
+  };
+  std::string said;
+  const double free = first(0, false, said);
+  EXPECT_EQ(said.find("frequencies"), std::string::npos) << said;
+  for (const double share : {0.005, 0.06, -0.06}) {
+    first(share, false, said);
+    const std::string word = share > 0 ? "frequencies are too low" : "frequencies are too high";
+    EXPECT_EQ(said.find(word) != std::string::npos, std::abs(share) > 0.02) << said;
+    EXPECT_NEAR(first(share, true, said) / free, std::sqrt(1 + share), 2e-3) << "by shear and the turn of sections";
+    EXPECT_EQ(said.find("frequencies"), std::string::npos) << said;
+  }
+}
+
 // Metal that is pulled by the stress s has s over its yield stress, linear or stiffening; what is elastic has none.
 TEST_F(LinearMeasures, MetalTellsItsStressOverYield) {
   sag_by = "gravity = [0, 0, 0]";
