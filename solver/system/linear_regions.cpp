@@ -11,6 +11,7 @@
 #include "linear/lapack.hpp"
 #include "system/collocation.hpp"
 #include "system/mode_forces.hpp"
+#include "system/strain_rates.hpp"
 
 namespace hilo {
 namespace {
@@ -101,12 +102,14 @@ Eigen::VectorXd recalled(const Modes& m, const Dissipation& d, const Config& fro
   return last * (amplitudes(m, from) - one) + before * (one - amplitudes(m, *d.two));
 }
 
-/// Times h: of the rate terms on the amplitudes.
-Eigen::VectorXd viscous_force(const LinearRegion& r, const Modes& m, const Stage& s) {
-  if (r.viscous.size() == 0 || !(s.h > 0)) return Eigen::VectorXd::Zero(m.n_modes);
-  Eigen::VectorXd way(m.n_modes);
-  for (int j = 0; j < m.n_modes; ++j) way[j] = amplitude(m, *s.w1, j) - amplitude(m, *s.w0, j);
-  return r.viscous * way;
+/// Times h: of the rate terms on the amplitudes.  `slope`, where it is wanted: its derivative by those of the end.
+Eigen::VectorXd viscous_force(const LinearRegion& r, const Modes& m, const Stage& s, Eigen::MatrixXd* slope = nullptr) {
+  if (!(s.h > 0)) return Eigen::VectorXd::Zero(m.n_modes);
+  const Eigen::VectorXd eta0 = amplitudes(m, *s.w0), eta1 = amplitudes(m, *s.w1);
+  if (r.strain.used() && r.viscous.size() > 0) return rate_force(r.viscous, eta0, eta1, s.slope0(), s.slope1(), slope);
+  if (r.viscous.size() == 0) return Eigen::VectorXd::Zero(m.n_modes);
+  if (slope) *slope = (s.slope1() - s.slope0()) * r.viscous;
+  return r.viscous * (eta1 - eta0);
 }
 
 }  // namespace
@@ -142,7 +145,9 @@ void LinearRegions::evaluate(Pass& p) const {
     for (Eigen::Index i = 1; i < F.rows(); ++i) p.body[m.body].tail<3>() += row(Ql, i).cross(row(F, i));
     p.scale(std::max(row(F, 0).norm(), r.A(0, 0) * points_.gravity.norm()));
     const double rate = s.h > 0 ? 1 / s.h : 0;
-    const Eigen::VectorXd viscous = rate * viscous_force(r, m, s), eta0 = amplitudes(m, *s.e0), eta1 = amplitudes(m, *s.e1);
+    Eigen::MatrixXd slope_of_viscous;
+    const Eigen::VectorXd viscous = rate * viscous_force(r, m, s, p.K ? &slope_of_viscous : nullptr), eta0 = amplitudes(m, *s.e0),
+                          eta1 = amplitudes(m, *s.e1);
     Eigen::VectorXd elastic = Eigen::VectorXd::Zero(m.n_modes);
     Eigen::MatrixXd slope_of_elastic;
     if (!s.rates_alone) {
@@ -175,7 +180,7 @@ void LinearRegions::evaluate(Pass& p) const {
     if (brakes) slope += s.alpha_slope * r.A_damped;
     add_inertia_tangent(slope, m, s, F, K);
     if (!s.rates_alone) K.block(6, 6, m.n_modes, m.n_modes) += s.chain * slope_of_elastic;
-    if (r.viscous.size() > 0) K.block(6, 6, m.n_modes, m.n_modes) += rate * (s.slope1() - s.slope0()) * r.viscous;
+    if (slope_of_viscous.size() > 0) K.block(6, 6, m.n_modes, m.n_modes) += rate * slope_of_viscous;
     for (Eigen::Index j = 6 + m.n_modes; j < K.rows() && !s.rates_alone; ++j) K(j, j) = p.sigma;
     tangent.finish();
   }

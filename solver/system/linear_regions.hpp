@@ -17,7 +17,7 @@ struct LinearRegion {
   int modes = -1;             // of Points::modes
   Eigen::MatrixXd A;          // rows: centre, directors, then three of each mode   (4 + 3m x 4 + 3m)
   Eigen::VectorXd stiffness;  // (m) [1/s^2]
-  Eigen::MatrixXd viscous;    // stiffness-proportional, of the modes   (m x m), or empty   [1/s]
+  Eigen::MatrixXd viscous;    // stiffness-proportional, of the modes (m x m), of the measures where it stiffens, or empty [1/s]
   Eigen::MatrixXd A_damped;   // int alpha rho b b^T, mass-proportional damping   (as A), or empty
   QuadraticStrain strain;     // where it stiffens
   Eigen::MatrixXd left_out;   // of modes (m x m), as Reduction has it [s^2]

@@ -6,6 +6,7 @@
 
 #include "linear/shared_cholesky.hpp"
 #include "system/reduction/reduction.hpp"
+#include "system/strain_rates.hpp"
 #include "verify/block_mesh.hpp"
 
 namespace hilo::test::quadratic_strain_test {
@@ -23,6 +24,7 @@ class StiffeningBar : public testing::TestWithParam<Shape> {
                                   }});
     in.X = mesh.X;
     SolidBatch b;
+    b.beta = 0.01;
     b.shape = GetParam(), b.material = StVenantKirchhoff{{1.2e7, 0.7e7}}, b.density = 1000, b.region = 0;
     b.kernel = solid_kernel(b.shape, law_index(b.material));
     for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
@@ -40,23 +42,28 @@ class StiffeningBar : public testing::TestWithParam<Shape> {
   }
 
   /// Truth: what the kernels of the cells say, displaced by the modes.
-  double energy_of_cells(const Vector& amplitudes) const {
-    const Vector u = found.shapes * amplitudes;
+  double energy_of_cells(const Vector& amplitudes) const { return of_cells(amplitudes, nullptr); }
+  /// What rates of strain between two states take, times the time between.
+  double taken_by_cells(const Vector& from, const Vector& to) const { return of_cells(to, &from); }
+  double of_cells(const Vector& amplitudes, const Vector* from) const {
+    const Vector u = found.shapes * amplitudes, u0 = found.shapes * (from ? *from : amplitudes);
     const SolidBatch& b = in.cells[0];
     const auto n = static_cast<size_t>(info(b.shape).n_nodes), w = static_cast<size_t>(b.kernel.width);
     struct alignas(64) Line {
       double value[8];
     };
-    std::vector<Line> X(3 * n), x(3 * n), energy(1);
+    std::vector<Line> X(3 * n), x(3 * n), x0(3 * n), energy(1);
     double sum = 0;
     for (size_t first = 0; first < b.nodes.size(); first += n) {
       for (size_t i = 0; i < 3 * n; ++i)
         for (size_t l = 0; l < w; ++l) {
           const int node = b.nodes[first + i / 3];
           X[0].value[i * w + l] = in.X[node][i % 3], x[0].value[i * w + l] = in.X[node][i % 3] + u[3 * node + i % 3];
+          x0[0].value[i * w + l] = in.X[node][i % 3] + u0[3 * node + i % 3];
         }
-      b.kernel.call(
-          {X[0].value, x[0].value, x[0].value, 1, 0, parameters(b.material), nullptr, nullptr, energy[0].value, nullptr, nullptr});
+      KernelCall call{X[0].value, x0[0].value, x[0].value, from ? 0.0 : 1.0, from ? b.beta : 0.0, parameters(b.material)};
+      (from ? call.dissipated : call.energy) = energy[0].value, call.weight = 0.5;
+      b.kernel.call(call);
       sum += energy[0].value[0];
     }
     return sum;
@@ -98,6 +105,38 @@ TEST_P(StiffeningBar, SlopeIsTheDerivativeOfItsForce) {
     }
     EXPECT_LT((slope - difference).norm(), 1e-11 * slope.norm()) << w;
   }
+}
+
+TEST_P(StiffeningBar, ItsDampingTakesWhatItsCellsTake) {
+  for (const double share : {1e-3, 0.1, 1.0}) {
+    const Vector from = share * eta[0], to = share * eta[1];
+    const double cells = taken_by_cells(from, to);
+    EXPECT_GT(cells, 0);
+    EXPECT_NEAR(rate_force(found.viscous, from, to, 0, 0, nullptr).dot(to - from), cells, 1e-9 * cells) << share;
+  }
+  Eigen::SelfAdjointEigenSolver<Matrix> sizes(found.viscous);
+  EXPECT_GT(sizes.eigenvalues()[0], -1e-12 * sizes.eigenvalues().maxCoeff()) << "never below zero, for any rates";
+}
+
+TEST_P(StiffeningBar, SlopesOfItsDampingAreItsDerivatives) {
+  const Eigen::Index m = eta[0].size();
+  const double c[2] = {-0.3, 0.8};
+  Matrix slope, difference(m, m);
+  rate_force(found.viscous, eta[0], eta[1], c[0], c[1], &slope);
+  for (Eigen::Index j = 0; j < m; ++j) {  // of the third degree: two widths give it exactly
+    const auto of = [&](double h) {
+      Vector f = Vector::Zero(m);
+      for (const double side : {-1, 1}) {
+        Vector from = eta[0], to = eta[1];
+        from[j] += side * c[0] * h, to[j] += side * c[1] * h;
+        f += side * rate_force(found.viscous, from, to, 0, 0, nullptr) / (2 * h);
+      }
+      return f;
+    };
+    const double h = std::abs(eta[1][j]) + 1e-3;
+    difference.col(j) = (4 * of(h) - of(2 * h)) / 3;
+  }
+  EXPECT_LT((slope - difference).norm(), 1e-11 * slope.norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, StiffeningBar, testing::Values(Shape::hex8, Shape::hex20r, Shape::tet10),

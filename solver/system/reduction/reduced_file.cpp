@@ -87,7 +87,7 @@ ReductionKey key_of(const ReductionInput& in) {
     loads += Digest().add(sum).value();
   }
   key.loads = Digest().add(loads).text();
-  constexpr int how = 3;  // one more when regions are reduced in another way: what was found before then serves no longer
+  constexpr int how = 4;  // one more when regions are reduced in another way: what was found before then serves no longer
   Digest basis;
   basis.add(how).add(in.n_vibrations).add(in.up_to).add(in.stiffening).add(in.stiffening && in.may_be_fewer);
   for (const double x : in.given.reshaped()) basis.add(x);
@@ -148,8 +148,8 @@ Reduction ReducedFile::read(const std::string& region, size_t n_nodes) const {
   if (out.shapes.cols() != m || (m > 0 && out.shapes.rows() != 3 * static_cast<Index>(n_nodes)) || out.sites.cols() != m ||
       out.soft.rows() != m || out.second_order.rows() != m + 1 ||
       2 * out.second_order.cols() != (out.soft.cols() + 3) * (out.soft.cols() + 4) || out.A.size() == 0 || !square(out.A, blocks) ||
-      !square(out.A_damped, blocks) || !square(out.viscous, m) || !square(out.left_out, m) ||
-      !square(out.strain.matrix(), m + m * (m + 1) / 2))
+      !square(out.A_damped, blocks) || !square(out.viscous, out.strain.used() ? out.strain.matrix().rows() : m) ||
+      !square(out.left_out, m) || !square(out.strain.matrix(), m + m * (m + 1) / 2))
     throw Error(store_.path(), "damaged: the arrays of " + group + " do not fit each other");
   return out;
 }

@@ -456,8 +456,12 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   factor.end();
   add_moments(in, cells, out);
   if (any(in, &SolidBatch::beta, &PointCell::beta)) {
-    const Matrix C = transposed_times(out.shapes, cells.times(RegionCells::damping_by_stiffness, out.shapes));
-    out.viscous = (C + C.transpose()) / 2;
+    if (out.strain.used()) {
+      out.viscous = viscous_strain(cells, out.shapes, in.length, tell);
+    } else {
+      const Matrix C = transposed_times(out.shapes, cells.times(RegionCells::damping_by_stiffness, out.shapes));
+      out.viscous = (C + C.transpose()) / 2;
+    }
   }
   return out;
 }

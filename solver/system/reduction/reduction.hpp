@@ -56,7 +56,7 @@ struct Reduction {
   Eigen::VectorXd omega2;    // of the modes, squared circular frequencies (m) [1/s^2]
   Eigen::MatrixXd A;         // int rho b b^T, b = (1, X - Xc, shapes by component)   (4 + 3m x 4 + 3m)
   Eigen::MatrixXd A_damped;  // the same of mass-proportional damping alpha rho, or empty
-  Eigen::MatrixXd viscous;   // of stiffness-proportional damping beta C on the modes (m x m), or empty [1/s]
+  Eigen::MatrixXd viscous;   // of damping beta C on the modes (m x m), on the measures of strain where it stiffens, or empty [1/s]
   QuadraticStrain strain;    // where it stiffens
   Eigen::MatrixXd sites;     // displacements of nodes far out, over the distance between them   (3 n_sites x m) [1 per unit of amplitude]
   Eigen::MatrixXd held;      // vibrations with the interfaces held: frequency [Hz], shares of the mass along x, y, z   (n x 4)

@@ -56,10 +56,10 @@ MatrixXd RegionCells::times(Kind kind, const MatrixXd& V, const VectorXd* u) con
   return out;
 }
 
-MatrixXd RegionCells::projected_stiffness(const MatrixXd& V, const VectorXd& u) const {
+MatrixXd RegionCells::projected(Kind kind, const MatrixXd& V, const VectorXd& u) const {
   MatrixXd out = MatrixXd::Zero(V.cols(), V.cols()), local, product;
   each(
-      stiffness,
+      kind,
       [&](std::span<const int> nodes, const double* Ke) {
         gather(V, nodes, local);
         product.noalias() = CellMatrix(Ke, local.rows(), local.rows()) * local;

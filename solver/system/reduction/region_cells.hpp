@@ -18,7 +18,7 @@ class RegionCells {
       : X_(X), cells_(cells), points_(points), mass_(scalar(mass)) {}
 
   /// Visit nodes and matrix (3n x 3n, row major) of each cell; the stiffness is the slope of the force at the displacements u (3 n_nodes),
-  /// or at rest.
+  /// or at rest.  The damping at u is that of the rate of strain there, int B(u)^T beta C B(u) dV.
   template <class Visit>
   void each(Kind kind, const Visit& visit, const Eigen::VectorXd* u = nullptr) const {
     each_solid(kind, visit, u);
@@ -45,12 +45,23 @@ class RegionCells {
       const SolidKernel kernel = of_mass ? solid_kernel(b.shape, place_of<StVenantKirchhoff>) : b.kernel;
       const int n = info(b.shape).n_nodes, W = kernel.width, n3 = 3 * n, count = static_cast<int>(b.nodes.size()) / n;
       const double factor = kind == damping_by_stiffness ? b.beta : kind == damping_by_mass ? b.alpha : 1;
+      const bool of_rate = kind == damping_by_stiffness && u;
       const auto lines = [](size_t doubles) { return (doubles + 7) / 8; };
       const size_t vector = lines(static_cast<size_t>(n3) * W), matrix = lines(static_cast<size_t>(n3) * n3 * W);
       scratch.assign(4 * vector + matrix + lines(static_cast<size_t>(kernel.n_state) * W), {});
       double *X = scratch[0].value, *x = X + 8 * vector, *zero = x + 8 * vector, *f = zero + 8 * vector, *K = f + 8 * vector;
       Ke.resize(static_cast<size_t>(n3) * n3);
-      KernelCall call{X, x, x, of_mass ? 0.0 : 1.0, 0, of_mass ? &no_matter : parameters(b.material), f, K, nullptr, nullptr, nullptr};
+      KernelCall call{X,
+                      x,
+                      x,
+                      of_mass || of_rate ? 0.0 : 1.0,
+                      of_rate ? 1.0 : 0.0,
+                      of_mass ? &no_matter : parameters(b.material),
+                      f,
+                      K,
+                      nullptr,
+                      nullptr,
+                      nullptr};
       call.density = b.density, call.area = b.area, call.weight = 1;
       if (of_mass) call.a = zero, call.mass_slope = 1;
       call.h0 = K + 8 * matrix;
@@ -77,8 +88,8 @@ class RegionCells {
   Eigen::MatrixXd times_mass(const Eigen::MatrixXd& V) const;
   /// Matrix times vectors over all nodes (3 n_nodes x k).
   Eigen::MatrixXd times(Kind kind, const Eigen::MatrixXd& V, const Eigen::VectorXd* u = nullptr) const;
-  /// V^T K(u) V (k x k).
-  Eigen::MatrixXd projected_stiffness(const Eigen::MatrixXd& V, const Eigen::VectorXd& u) const;
+  /// V^T K(u) V (k x k), or of the damping by stiffness.
+  Eigen::MatrixXd projected(Kind kind, const Eigen::MatrixXd& V, const Eigen::VectorXd& u) const;
 
  private:
   const std::vector<Vec3>& X_;

@@ -20,5 +20,8 @@ Eigen::MatrixXd modal_derivatives(const RegionCells& cells, const Eigen::MatrixX
 /// Of all modes; `length` of the region [m].
 QuadraticStrain quadratic_strain(const RegionCells& cells, const Eigen::MatrixXd& modes, const Eigen::VectorXd& omega2, double length,
                                  const std::function<void(const std::string&)>& tell);
+/// Of damping by stiffness: beta C of the cells in the place of C.
+Eigen::MatrixXd viscous_strain(const RegionCells& cells, const Eigen::MatrixXd& modes, double length,
+                               const std::function<void(const std::string&)>& tell);
 
 }  // namespace hilo
