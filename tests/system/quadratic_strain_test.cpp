@@ -61,7 +61,8 @@ class StiffeningBar : public testing::TestWithParam<Shape> {
           X[0].value[i * w + l] = in.X[node][i % 3], x[0].value[i * w + l] = in.X[node][i % 3] + u[3 * node + i % 3];
           x0[0].value[i * w + l] = in.X[node][i % 3] + u0[3 * node + i % 3];
         }
-      KernelCall call{X[0].value, x0[0].value, x[0].value, from ? 0.0 : 1.0, from ? b.beta : 0.0, parameters(b.material)};
+      KernelCall call{X[0].value, x0[0].value, x[0].value, from ? 0.0 : 1.0, from ? b.beta : 0.0, parameters(b.material), nullptr,
+                      nullptr,    nullptr,     nullptr,    nullptr};
       (from ? call.dissipated : call.energy) = energy[0].value, call.weight = 0.5;
       b.kernel.call(call);
       sum += energy[0].value[0];
