@@ -15,6 +15,7 @@
 
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "model/inputs.hpp"
 #include "post/commands/commands.hpp"
 #include "post/files/output.hpp"
 #include "post/run/run_file.hpp"
@@ -91,6 +92,7 @@ void run(const ExportOptions& o) {
   if (o.output.ends_with(".gltf"))
     throw Error(o.output, "glTF is written in its binary form", "give the file the ending .glb", Exit::usage);
   const bool gltf = o.output.ends_with(".glb");
+  if (o.output != "-") check_output(o.output);
   if (!gltf && o.output != "-" && !o.output.ends_with(".vtu"))
     throw Error(o.output, "no format has this ending", "run.vtu, or run.glb for glTF", Exit::usage);
   for (const auto& [given, option] : {std::pair{!o.field.empty(), "--field"},

@@ -8,6 +8,7 @@
 
 #include "system/collocation.hpp"
 #include "system/connector_clique.hpp"
+#include "system/system.hpp"
 
 namespace hilo {
 namespace {
@@ -365,6 +366,10 @@ void Beams::observe(const Sight& sight) {
 void Beams::tie(Ties& ties) const {
   for (const BeamCell& cell : cells)
     if (const int body = tie_ends(points_, connector_of(cell), ties); body >= 0) ties.exclude(body);
+}
+
+void each_cell_of_beams(const System& system, const std::function<void(const std::array<int, 2>&)>& use) {
+  for (const BeamCell& cell : system.part<Beams>().cells) use(cell.body);
 }
 
 }  // namespace hilo

@@ -3,6 +3,9 @@
 //
 // The mass of an element couples its two sections.  It is constant in their points, so a step keeps energy and both momenta.
 #pragma once
+#include <array>
+#include <functional>
+
 #include "physics/section_mesh.hpp"
 #include "system/beam_cells.hpp"
 #include "system/contribution.hpp"
@@ -65,5 +68,8 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
   const Points& points_;
   std::vector<int> clique_;
 };
+
+/// Calls use(bodies) with the bodies at both ends of every cell of beams that deform by themselves.
+void each_cell_of_beams(const System& system, const std::function<void(const std::array<int, 2>&)>& use);
 
 }  // namespace hilo

@@ -64,17 +64,16 @@ Vec3 triple(const Entry& e, std::string_view key) {
 }
 
 /// Of three numbers, one in a direction that the joint leaves free acts on nothing.
-void refuse_idle_springs(const Entry& e, const JointKind& kind) {
+void warn_of_idle_springs(const Entry& e, const JointKind& kind) {
   constexpr std::array<const char*, 3> name{"x", "y", "its axis"};
   for (const auto& [key, rows] :
        {std::pair("stiffness", "xyz"), {"damping", "xyz"}, {"angular_stiffness", "ABC"}, {"angular_damping", "ABC"}}) {
     if (!e.has(key) || e.numbers(key).size() < 3) continue;
     for (size_t i = 0; i < 3; ++i)
       if (e.numbers(key)[i] != 0 && kind.holds.find(rows[i]) == kind.holds.npos)
-        e.refuse(key,
-                 fmt::format("a joint of kind {} is free {} {}: its {} there would act on nothing", kind.name,
-                             rows[0] == 'x' ? "along" : "about", name[i], key),
-                 "write 0 there, or one number for all; a [[spring]] beside the joint acts there");
+        warn(e.where(key),
+             fmt::format("{}: a joint of kind {} is free {} {}, so its {} there acts on nothing; a [[spring]] beside it would", e.label(),
+                         kind.name, rows[0] == 'x' ? "along" : "about", name[i], key));
   }
 }
 
@@ -87,7 +86,7 @@ Spring compliant(const Entry& e, const JointPlace& j, const Config& q) {
     throw Error(e.has(key) ? e.where(key) : e.place.text(),
                 fmt::format("{}: {} leaves a row of the joint without a spring", e.label(), key),
                 fmt::format("give {} along every row, or leave all stiffnesses out", key));
-  refuse_idle_springs(e, joint_kinds().at(j.kind));
+  warn_of_idle_springs(e, joint_kinds().at(j.kind));
   Spring c = make_compliant(j, s, q);
   c.name = e.name;
   return c;

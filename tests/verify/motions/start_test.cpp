@@ -11,7 +11,7 @@ const std::string steel = solid(2e11, 0.3, 8000) + probe("tip", "xmax");
 Mesh bar() { return block_mesh({.shape = Shape::hex20r, .n = {8, 1, 1}, .high = {1, 0.05, 0.05}}); }
 
 // Exact: moved as a rigid body the bar rests without strain, and its tip is where the motion brings it.
-TEST_F(Motions, ThatBeginAwayFromTheDrawingBeginWithTheirRegion) {
+TEST_F(Motions, ThatBeginAwayBeginWithTheirRegionOnRanksToo) {
   write_mesh(*this / "mesh.h5", bar(), {"test"});
   ASSERT_EQ(run("hilo-part mesh.h5 -n 2 -o parts.h5").exit, 0);
   const auto shift = [](const std::string& on, const std::string& more = "") {
@@ -23,8 +23,8 @@ TEST_F(Motions, ThatBeginAwayFromTheDrawingBeginWithTheirRegion) {
   for (const auto& [moved, to] : {std::pair{turn, turned}, {shift("xmin"), up}, {shift("xmin") + shift("xmax"), up}, {by_components, up}})
     for (const std::string mesh : {"mesh.h5", "parts.h5"}) {
       write("scene.toml", steel + moved + in_time(2e-3, 1e-4));
-      const std::string ranks = mesh == "parts.h5" ? "mpirun -n 2 " : "";
-      const Ran ran = run(ranks + "hilo-solve scene.toml " + mesh + " -o run.h5");
+      const std::string command = "hilo-solve scene.toml " + mesh + " -o run.h5";
+      const Ran ran = mesh == "parts.h5" ? mpirun(2, command, path()) : run(command);
       ASSERT_EQ(ran.exit, 0) << ran.err;
       EXPECT_EQ(ran.err.find("warning"), std::string::npos) << ran.err;
       const Results r(*this / "run.h5");

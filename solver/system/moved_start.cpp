@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "dynamics/start/moved_start.hpp"
+#include "system/moved_start.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -130,7 +130,7 @@ MovedStart begin_moved(const System& system, Config& q, double factor) {
     const auto n = static_cast<size_t>(info(b.shape).n_nodes);
     for (size_t e = 0; e < b.cells.size(); ++e) at.cell({b.nodes.data() + e * n, n}, {});
   }
-  for (const BeamCell& c : system.part<Beams>().cells) at.cell({}, c.body);
+  each_cell_of_beams(system, [&](const std::array<int, 2>& bodies) { at.cell({}, bodies); });
 
   const std::vector<std::int64_t> low = at.lowest(), high = at.highest();
   const size_t n = system.X.size();
