@@ -47,7 +47,7 @@ TEST_F(BeamTwist, AStripResistsItByItsTensionAndByItself) {
   EXPECT_NEAR(pulled, 0.5 * turn(10e3, 0.5), 3e-3 * pulled) << "2.7 times as far without";
   EXPECT_LT(strip(0, 0.5).first, 0.5 * 0.5 / GJ);
   const auto [far, nearer] = strip(0, 5);
-  EXPECT_NEAR(far, 0.5 * turn(0, 5), 3e-3 * far) << "Weber: 30 % farther without";
+  EXPECT_NEAR(far, 0.5 * turn(0, 5), 3e-3 * far) << "Weber: 1.7 times as far without";
   EXPECT_NEAR(nearer, 0.5 * Ip / A * std::pow(far / 0.5, 2) / 2, 0.01 * nearer);
 }
 
