@@ -53,11 +53,11 @@ void Audit::start(const State& s) {
 }
 
 std::string Audit::look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor,
-                        double taken_away, const Taken* before, bool followed) {
+                        const Besides& besides, const Taken* before, bool followed) {
   opens_dropped_row_ = false;
   next_ = {};
   next_.energy = energy_of(system_, end, Side::left);
-  next_.work = sums_.work + std::max(0.0, -taken_away), next_.dissipated = sums_.dissipated + std::max(0.0, taken_away);
+  next_.work = sums_.work + besides.work, next_.dissipated = sums_.dissipated + besides.dissipated;
   const double at_start = before ? system_.work(before->stage, before->lambda).external : 0;
   for (const Taken& part : taken) {
     const Work w = system_.work(part.stage, part.lambda);

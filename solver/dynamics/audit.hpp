@@ -38,10 +38,10 @@ class Audit {
   /// The state before the first step.
   void start(const State& s);
   /// The step from q0 to `end`: why it cannot be accepted, or "".  `load_factor` is that of a static analysis;
-  /// `taken_away`: energy that the method took besides, or gave where it is negative [J]; `before`: the forces at the start of a load step,
+  /// `besides`: energies besides those of `taken`; `before`: the forces at the start of a load step,
   /// whose work is that of the mean of both; `followed`: the way was gone in shorter moves, so it may turn any far.
   std::string look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor = 1,
-                   double taken_away = 0, const Taken* before = nullptr, bool followed = false);
+                   const Besides& besides = {}, const Taken* before = nullptr, bool followed = false);
   /// The step looked at last is accepted.
   void accept(double t);
   /// Work of an impulse between two steps [J].

@@ -270,7 +270,7 @@ class DynamicSteps final : public Steps {
       run_.integrator->end(reached_), reached_.t = state.t + h;
       run_.system.advance(run_.integrator->taken().back().stage);
       failure_ = run_.system.fault(reached_.q);
-      if (failure_.empty()) failure_ = run_.audit->look(state.q, reached_, run_.integrator->taken(), r, 1, run_.integrator->taken_away());
+      if (failure_.empty()) failure_ = run_.audit->look(state.q, reached_, run_.integrator->taken(), r, 1, run_.integrator->besides());
       if (!failure_.empty()) continue;
       if (at_.stay > 0)
         --at_.stay;

@@ -33,6 +33,30 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
   NewtonReport all;
   all.reason = system.too_far(s.t, s.t + h);
   if (!all.reason.empty()) return all;
+  const auto from = [&](const Config* more) -> const State& {
+    if (!more) return s;
+    begun_ = s;
+    combine(begun_.v, {{1, &s.v}, {1, more}});
+    return begun_;
+  };
+  const Config* more = laws_.begin(h);
+  all = stages(tools, from(more), h, predictor);
+  if (!all.converged || !mean_acceleration() || !system.traits().is_driven || system.n_joint_blocks() == 0) return all;
+  Config v;
+  end_velocity(v);
+  if (laws_.end(system, tools.solver, s, h, solved_.back().q, v)) return all;
+  tried_h_ = 0;
+  NewtonReport once_more = stages(tools, from(laws_.again()), h, predictor);
+  once_more.iterations += all.iterations, once_more.linear_iterations += all.linear_iterations;
+  if (!once_more.converged) return once_more;
+  end_velocity(v);
+  laws_.end(system, tools.solver, s, h, solved_.back().q, v);
+  return once_more;
+}
+
+NewtonReport StageIntegrator::stages(const StepTools& tools, const State& s, double h, Predictor predictor) {
+  const System& system = tools.system;
+  NewtonReport all;
   begin(system, s, h);
   h_ = h, predictor_ = predictor, lambda_ = s.lambda;
   solved_.clear(), solved_.reserve(n_stages());
@@ -85,15 +109,18 @@ bool StageIntegrator::is_tried(const System& system, double h) {
 
 void StageIntegrator::end(State& s) {
   end_velocity(s.v);
+  if (const Config* more = laws_.at_end()) combine(s.v, {{1, &s.v}, {1, more}});
   s.q = solved_.back().q, s.lambda = lambda_;
 }
 
 void StageIntegrator::accept(State& s) {
   end(s);
+  if (Config* a = mean_acceleration()) laws_.add_to(taken_.back().lambda, *a, h_);
   finish(s.v);
+  laws_.accept();
   for (int k = 0; k < n_stages(); ++k)
     if (predictor_ == Predictor::rigid_rotation)
-      past_[k].accept(*system_, h_, std::move(missed_[k]), taken_[k].lambda);
+      past_[k].accept(*system_, h_, std::move(missed_[k]), k + 1 == n_stages() ? lambda_ : taken_[k].lambda);
     else  // what another guess missed says nothing of this one
       past_[k].clear();
   s.t += h_, tried_h_ = 0;

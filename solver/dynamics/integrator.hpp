@@ -7,6 +7,7 @@
 #include <string>
 
 #include "dynamics/extrapolation.hpp"
+#include "dynamics/integrator/law_rates.hpp"
 #include "dynamics/newton.hpp"
 #include "dynamics/predictor.hpp"
 #include "dynamics/state.hpp"
@@ -51,6 +52,12 @@ struct Taken {
   std::vector<double> lambda;
 };
 
+/// Energies of a step besides what its stages do [J].
+struct Besides {
+  double work = 0;        // of what moves by a law
+  double dissipated = 0;  // by the method
+};
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -69,8 +76,8 @@ class Integrator {
   /// Accelerations of the step solved last, and where in the step they and the multipliers belong: 1/2 the middle, 1 the end.
   virtual const Config& acceleration() const = 0;
   virtual double own_time() const = 0;
-  /// Energy that the step solved last takes away besides what its stages do [J]; negative: what drives give.
-  virtual double taken_away() const { return 0; }
+  /// Of the step solved last.
+  virtual Besides besides() const { return {}; }
   /// Velocities at the end of the step accepted last, as results show them; null: those of its state.
   virtual const Config* velocity() const { return nullptr; }
   /// Whether State::a and State::jerk must be consistent with forces and constraints at the start and after a jump of the loads.
@@ -96,13 +103,14 @@ class StageIntegrator : public Integrator {
   void end(State& s) final;
   void accept(State& s) final;
   std::span<const Taken> taken() const final { return taken_; }
-  void restart() final { past_.clear(), forget(); }
+  Besides besides() const final { return {.work = laws_.work()}; }
+  void restart() final { past_.clear(), laws_.forget(), forget(); }
   void carry(const Carry& carry) final {
     for (Extrapolation& p : past_) p.carry(carry);
-    tried_h_ = 0;
+    laws_.carry(carry), tried_h_ = 0;
   }
   void archive(Archive& a, const System& system) final {
-    a(name(), past_);
+    a(name(), past_, laws_);
     archive_history(a, system);
   }
 
@@ -116,6 +124,9 @@ class StageIntegrator : public Integrator {
   virtual double instant(int) const { return 1; }  // of stage k's unknown, in units of the step
   /// Velocities at the end of the step solved last.
   virtual void end_velocity(Config& v) = 0;
+  /// Accelerations where they are the mean ones of a step, (v1 - v0)/h, as v1 = 2 dq/h - v0 implies: rows that follow laws then need
+  /// LawRates.  Null: other formulas.
+  virtual Config* mean_acceleration() { return nullptr; }
   /// The step is accepted with end velocities v: history.
   virtual void finish(const Config& v) = 0;
   /// Its own history, at a restart.
@@ -124,6 +135,7 @@ class StageIntegrator : public Integrator {
   virtual void archive_history(Archive& a, const System& system) = 0;
 
  private:
+  NewtonReport stages(const StepTools& tools, const State& s, double h, Predictor predictor);
   bool is_tried(const System& system, double h);
 
   double h_ = 0;
@@ -136,6 +148,8 @@ class StageIntegrator : public Integrator {
   double tried_h_ = 0;                       // and its length; 0: the step was accepted
   std::vector<Taken> taken_;
   std::vector<double> lambda_;
+  LawRates laws_;
+  State begun_;  // the start of the step with what laws add to it
 };
 
 }  // namespace hilo

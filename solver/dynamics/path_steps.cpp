@@ -280,7 +280,7 @@ class PathSteps final : public Steps {
     if (why_.empty()) why_ = system.too_far(from.q, q);
     Taken before{stage(from.q, at_.share), from.lambda};
     before.stage.end = &to.state.q;
-    if (why_.empty()) why_ = run_.audit->look(from.q, to.state, {&taken_, 1}, report_, p, 0, &before);
+    if (why_.empty()) why_ = run_.audit->look(from.q, to.state, {&taken_, 1}, report_, p, {}, &before);
     return why_.empty();
   }
   /// Where points of contact come and go so that a step along the path does not converge: a load step, damped, and from soft contacts.

@@ -195,7 +195,7 @@ class StaticSteps final : public Steps {
     const State& state = run_.state;
     Taken before{stage_at(state.q, state.t), state.lambda};
     before.stage.elapsed = slow, before.stage.a = &no_acceleration_, before.stage.load_factor = at_.done, before.stage.end = &reached.q;
-    return run_.audit->look(state.q, reached, {&taken_, 1}, r, next, 0, &before, followed);
+    return run_.audit->look(state.q, reached, {&taken_, 1}, r, next, {}, &before, followed);
   }
 
   /// To the state that lies ahead: why it cannot be accepted, or "".

@@ -106,6 +106,7 @@ class EnergyMomentumIntegrator final : public StageIntegrator {
   }
   std::vector<std::string> timed() const override { return clocks_ ? clocks_->names() : std::vector<std::string>{}; }
   const Config& acceleration() const override { return a_; }
+  Config* mean_acceleration() override { return &a_; }
   double own_time() const override { return 0.5; }
   bool alternates() const override { return true; }
 

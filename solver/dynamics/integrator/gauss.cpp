@@ -56,7 +56,7 @@ class GaussIntegrator final : public CoupledStages {
   const Config& acceleration() const override { return a_end_; }
   const Config* velocity() const override { return &v_end_; }
   double own_time() const override { return 1; }
-  double taken_away() const override { return lost_; }
+  Besides besides() const override { return besides_; }
 
   NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) override {
     const System& system = *(system_ = &tools.system);
@@ -286,9 +286,10 @@ class GaussIntegrator final : public CoupledStages {
   /// has its energy from the motion.  Where it is no longer small, it goes, and its energy with it [ascher-petzold-1991]; false where it is
   /// large.
   bool settle_velocities() {
-    lost_ = given_.any() ? system_->energy(q1_, v1_).kinetic : 0;
+    besides_ = {};
+    if (given_.any()) besides_.work = -system_->energy(q1_, v1_).kinetic;
     given_.put_rates(v1_);
-    if (given_.any()) lost_ -= system_->energy(q1_, v1_).kinetic;
+    if (given_.any()) besides_.work += system_->energy(q1_, v1_).kinetic;
     v_end_ = v1_;
     nearest_velocities(*system_, *end_solver_, q1_, v_end_, end_time());
     given_.put_rates(v_end_);
@@ -297,7 +298,7 @@ class GaussIntegrator final : public CoupledStages {
     const Energy now = system_->energy(q1_, v1_);
     const double kinetic = now.kinetic, besides = system_->energy(q1_, w).kinetic;
     kinetic_ = std::max({kinetic, system_->energy(q_[1], v_[1]).kinetic, most_kinetic_});
-    if (besides > small_besides * kinetic) lost_ += kinetic - system_->energy(q1_, v_end_).kinetic, v1_ = v_end_;
+    if (besides > small_besides * kinetic) besides_.dissipated = kinetic - system_->energy(q1_, v_end_).kinetic, v1_ = v_end_;
     return besides <= large_besides * kinetic_ + round_off * (std::abs(now.elastic) + std::abs(now.gravity));  // what rests has no other
   }
 
@@ -315,7 +316,7 @@ class GaussIntegrator final : public CoupledStages {
   }
 
   static constexpr double small_besides = 1e-8, large_besides = 1e-3, round_off = 1e-12;  // of the kinetic energy; of the others
-  double lost_ = 0;                                                                       // in the step solved last [J]
+  Besides besides_;                                                                       // of the step solved last
   double kinetic_ = 0, most_kinetic_ = 0;  // the largest so far, without the step solved last [J]
   double refused_t_ = -1, refused_h_ = 0;  // for losing too much
   const System* system_ = nullptr;

@@ -36,6 +36,7 @@ class MidPointIntegrator final : public StageIntegrator {
   void finish(const Config&) override {}
   void archive_history(Archive&, const System&) override {}  // a step begins with positions and velocities alone
   const Config& acceleration() const override { return a_; }
+  Config* mean_acceleration() override { return &a_; }
   double own_time() const override { return 0.5; }
   bool alternates() const override { return true; }
 

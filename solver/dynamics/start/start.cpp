@@ -87,8 +87,9 @@ constexpr double exact = 1e-9;  // of a linear solve; one that leaves more, as C
 constexpr int most_solves = 5;
 
 struct Reached {
-  double change = 0;     // the largest
-  std::string why = {};  // masses and joints do not determine it
+  double change = 0;                 // the largest
+  std::string why = {};              // masses and joints do not determine it
+  std::vector<double> impulse = {};  // of the rows, laid out like multipliers; empty: none
 };
 
 void require(const std::string& why) {
@@ -96,16 +97,19 @@ void require(const std::string& why) {
 }
 
 /// Velocities go to the nearest ones, in the mass norm, that the rows allow: nearest to v - moved.  Without a solve where nothing moves
-/// unless `even_at_rest`.
-Reached to_allowed(const System& system, KktSolver& solver, const Config& q, Config& v, Config moved, double t, bool even_at_rest) {
+/// unless `even_at_rest`.  `by`: rates of rows change by that, instead of to zero.  `sigma`: of the matrix of mass and rows that the solver
+/// holds.
+Reached to_allowed(const System& system, KktSolver& solver, const Config& q, Config& v, Config moved, double t, bool even_at_rest,
+                   std::span<const double> by = {}, double sigma = 0) {
   Config zero;
   combine(zero, {{0, &v}});
-  std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), none = lambda, b, z(3 * system.n_blocks(), 0.0), rate;
+  std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), none = lambda, b, z(3 * system.n_blocks(), 0.0), rate, at_start;
+  const Config start = v;
   const int first = 3 * system.first_joint_block();
-  double sigma = 0, change = 0, left = 1;
+  double change = 0, left = 1;
   for (int pass = 0; pass < most_solves && left > exact; ++pass) {
     b.assign(z.size(), 0.0);
-    if (pass > 0 || even_at_rest || system.moves()) {  // M moved + G^T lambda
+    if (pass > 0 || even_at_rest || (system.moves() && by.empty())) {  // M moved + G^T lambda
       Residual r, without;
       Stage inertia = mass_stage(system.start, moved, t);  // without strain
       inertia.left = inertia.end = &q;
@@ -117,12 +121,18 @@ Reached to_allowed(const System& system, KktSolver& solver, const Config& q, Con
       for (int k = 0; k < first; ++k) b[k] = without.r[k] - r.r[k];
       complete(system, solver, b);
     }
-    system.row_rates(q, v, nullptr, t, rate, nullptr);
+    if (pass > 0 || by.empty()) {
+      system.row_rates(q, v, nullptr, t, rate, nullptr);
+      if (!by.empty()) system.row_rates(q, start, nullptr, t, at_start, nullptr);
+    } else {
+      rate.assign(by.size(), 0.0), at_start = rate;
+    }
+    for (size_t k = 0; k < by.size(); ++k) rate[k] -= at_start[k] + by[k];
     const auto is_zero = [](double x) { return x == 0; };
     if (pass == 0 && !even_at_rest &&
         system.comm->max(std::all_of(rate.begin(), rate.end(), is_zero) && std::all_of(b.begin(), b.end(), is_zero) ? 0 : 1) == 0)
       return {};
-    if (pass == 0) {
+    if (pass == 0 && sigma == 0) {
       Residual r;
       system.evaluate(mass_stage(q, zero, 0), none, r, &solver);
       sigma = r.sigma;
@@ -132,13 +142,13 @@ Reached to_allowed(const System& system, KktSolver& solver, const Config& q, Con
     const SolveReport solved = solver.solve(b, z);
     if (!solved.ok)
       return {0, fmt::format("the joints and masses do not determine the motion: {}{}", solved.message, free_part(system, solver, sigma))};
-    const double by = system.comm->max(system.add_rates(v, q, z));
-    if (pass == 0) change = by;
+    const double changed = system.comm->max(system.add_rates(v, q, z));
+    if (pass == 0) change = changed;
     system.add_rates(moved, q, z);
     for (size_t k = 0; k < lambda.size(); ++k) lambda[k] += sigma * z[first + k];
     left *= solved.residual;
   }
-  return {change};
+  return {change, {}, std::move(lambda)};
 }
 
 Reached to_nearest(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {
@@ -159,6 +169,21 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
   const Reached reached = to_allowed(system, solver, q, v, std::move(moved), t, false);
   require(reached.why);
   return reached.change;
+}
+
+std::vector<double> change_rates(const System& system, KktSolver& solver, const Config& q, Config& v, double t, std::span<const double> by,
+                                 double* sigma) {
+  Config reached = v, zero;
+  combine(zero, {{0, &v}});
+  if (*sigma == 0) {
+    Residual r;
+    system.evaluate(mass_stage(q, zero, 0), std::vector<double>(by.size()), r, &solver);
+    *sigma = r.sigma;
+  }
+  Reached there = to_allowed(system, solver, q, reached, std::move(zero), t, false, by, *sigma);
+  if (!there.why.empty()) return {};
+  v = std::move(reached);
+  return std::move(there.impulse);
 }
 
 void nearest_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {

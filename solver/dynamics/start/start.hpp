@@ -2,6 +2,8 @@
 // Before the first step: positions and velocities that satisfy the constraints, consistent accelerations, static equilibrium.
 #pragma once
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "dynamics/integrator.hpp"
 #include "dynamics/newton.hpp"
@@ -15,6 +17,11 @@ double assemble_positions(System& system, KktSolver& solver, Config& q);
 /// Velocities from time t on, in the mass norm: those of the laws for what moves by one, and consistent with the joints and what drives
 /// them for the rest; returns the largest change of what is free [m/s].
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);
+/// Velocities at time t change by impulses of all rows, which change the rates of rows by `by` [m/s, 1/s; laid out like multipliers].
+/// `sigma`: of the matrix of mass and rows at q that the solver holds; 0: it is made, and then held.  Returns the impulses [N s, N m s over
+/// the scale of a row]; empty: masses and rows do not determine the change.
+std::vector<double> change_rates(const System& system, KktSolver& solver, const Config& q, Config& v, double t, std::span<const double> by,
+                                 double* sigma);
 /// Accelerations and multipliers that satisfy equations and constraints at (s.q, s.v) at time s.t; returns why masses and joints do not
 /// determine them, or nothing.  `has_mass`: the solver holds the matrix of mass and rows at s.q.
 std::string find_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda,
