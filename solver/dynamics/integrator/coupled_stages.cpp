@@ -106,11 +106,13 @@ NewtonReport CoupledStages::iterate(const System& system, const NewtonOptions& o
   return report;
 }
 
-/// The largest relative residual.
+/// The largest residual, over the largest force of all stages: in one of them alone nothing may press.
 void CoupledStages::judge(const System& system, KktSolver& solver, NewtonReport& report) {
   report.residual = 0;
+  for (Residual& r : r_) complete(system, solver, r);
+  const double force = scales(system).first;
   for (Residual& r : r_) {
-    complete(system, solver, r);
+    r.force_scale = force;
     const double x = relative_residual(system, r);
     if (!(x <= report.residual)) report.residual = x;  // keeps a NaN
     report.least_det.take(r.least_det);

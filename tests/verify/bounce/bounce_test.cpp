@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A stop gives the energy back that it took, or the part that its restitution asks for.
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::bounce_test {
@@ -79,6 +80,35 @@ TEST(Bounce, MistakesAreNamed) {
   c.expect_mistake("'stop.floor.kind=\"angle\"'", "no free angle");
   c.expect_mistake("stop.floor.restitution=1.5", "restitution");
   c.expect_mistake("stop.floor.upper=-0.6", "lower is not below upper");
+}
+
+/// Free over 0.1 m to either side at 1 m/s, beyond it a spring of 10 000 N/m on 1 kg: half a wave of pi/100 s.
+double between_springs(double t) {
+  constexpr double half = 3.14159265358979324 / 100;
+  double s = std::fmod(t, 2 * (0.2 + half));
+  if (s <= 0.1) return s;
+  if ((s -= 0.1) <= half) return 0.1 + std::sin(100 * s) / 100;
+  if ((s -= half) <= 0.2) return 0.1 - s;
+  if ((s -= 0.2) <= half) return -0.1 - std::sin(100 * s) / 100;
+  return s - half - 0.1;
+}
+
+// Exact.  In some stages nothing presses, in others of the same step all does.
+TEST(Bounce, BetweenTwoSpringsGoesOnWhereStagesMeetTheGap) {
+  const Case c("bounce");
+  c.write("gap.toml", body("ball", 1, Vec3::Zero(), Vec3::Ones()) + initial("ball", "velocity = [1, 0, 0]") +
+                          axial("prismatic", "rail", "ground", "ball", Vec3::Zero(), Vec3::UnitX()) +
+                          spring("curve", "gap", "ground", "ball",
+                                 "at_a = [-1, 0, 0]\nat_b = [0, 0, 0]\nextension = [-0.2, -0.1, 0.1, 0.2]\nforce = [-1000, 0, 0, 1000]") +
+                          in_time(2, 4e-3));
+  for (const std::string method : {"radau", "gauss"})
+    for (const double step : {1e-2, 5e-3, 4e-3, 1e-3}) {
+      SCOPED_TRACE(fmt::format("{} {}", method, step));
+      succeeded(c.run(fmt::format("hilo-solve --quiet gap.toml -o run.h5 --set time.integrator={} --set time.step={}", method, step)));
+      const Results r = c.results();
+      const auto x = r.history("coordinate/rail");
+      for (Eigen::Index i = 0; i < x.rows(); ++i) ASSERT_NEAR(x(i, 0), between_springs(r.t()[i]), 500 * step * step) << r.t()[i];
+    }
 }
 
 }  // namespace
