@@ -23,6 +23,7 @@ class OnCoordinates final : public SpringLaw {
   void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const override;
   void commit(const Values& e, const Values& rate) override;
   bool needs_rate() const override { return law_->needs_rate(); }
+  bool only_presses() const override { return law_->only_presses(); }
   void archive(Archive& a) override { coordinates_->archive(a), law_->archive(a); }
   bool conserves() const override { return law_->conserves(); }
   bool is_smooth() const override { return law_->is_smooth(); }

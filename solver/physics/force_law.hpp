@@ -36,6 +36,8 @@ class SpringLaw {
   /// Accept e and its rate as the state to go on from (unwrapped angles, speed of approach).
   virtual void commit(const Values& /*e*/, const Values& /*rate*/) {}
   virtual bool needs_rate() const { return false; }
+  /// Whether it only presses, and begins and ends at any instant.
+  virtual bool only_presses() const { return false; }
   /// All that commit() leaves.
   virtual void archive(Archive&) {}
   /// Whether it is a potential and nothing else.

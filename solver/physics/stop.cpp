@@ -60,6 +60,7 @@ struct Stop final : SpringLaw {
     out.dissipated += f * (x1[0] - x0[0]);
   }
   bool needs_rate() const override { return loss.any(); }
+  bool only_presses() const override { return true; }
   void archive(Archive& a) override { a("stop", towards_lower, towards_upper); }
   /// What is pressed faster than its contact began begins anew with its own speed.
   void commit(const Values& x, const Values& rate) override {

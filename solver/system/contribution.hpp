@@ -135,6 +135,7 @@ struct Output {
   int n_end = 0, n_mid = 0;
   /// The row from both; null: the one and then the other.
   std::function<void(const double* end, const double* mid, std::vector<double>& row)> row = nullptr;
+  bool only_presses = false;  // mid: forces that begin and end at any instant, never below zero
 };
 
 class System;

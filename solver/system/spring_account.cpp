@@ -114,7 +114,7 @@ void Springs::archive(Archive& a) {
 
 std::vector<Output> Springs::outputs() const {
   std::vector<Output> out;
-  for (const Spring& c : list) out.push_back({.group = c.group, .name = c.name, .n_mid = 6});
+  for (const Spring& c : list) out.push_back({.group = c.group, .name = c.name, .n_mid = 6, .only_presses = c.law->only_presses()});
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/table.hpp"
 #include "dynamics/modes/accelerated_support.hpp"
+#include "dynamics/modes/linearized.hpp"
 #include "dynamics/modes/natural_modes.hpp"
 #include "dynamics/modes/whirl.hpp"
 #include "dynamics/run_parts.hpp"
@@ -95,6 +96,7 @@ class ModeSteps final : public Steps {
       const FeltLess at_rest(system, carried);
       modes = natural_modes(system, *run_.solver, relative, spins ? std::max(40, 3 * wanted) : wanted, !spins,
                             [&](int found) { progress.show(found, 0, 0); });
+      if (!spins && time_.text("start") != "equilibrium") tell_unstressed(modes);
     }
     progress.done();
     check_rest(modes, system.largest_rate(relative.a));
@@ -184,6 +186,54 @@ class ModeSteps final : public Steps {
       warn(time_.where("analysis"),
            fmt::format("the state is not at rest: it accelerates by up to {:.3g} m/s^2, and rests about {:.2g} m away ({})", acceleration,
                        away, "start = \"equilibrium\" goes there"));
+  }
+
+  /// Modes of the drawn state lack the stress that the loads would bring: by how much that would change a mode, to first order, from the
+  /// stiffness along it on either side of the drawn state.
+  void tell_unstressed(const std::vector<FoundMode>& modes) const {
+    constexpr double told = 0.04, farthest = 0.02;  // of the square of a frequency; of the scene's length
+    constexpr size_t most = 20;                     // the lowest ones
+    const System& system = run_.system;
+    const State& drawn = run_.state;
+    const bool floats = std::ranges::any_of(modes, [&](const FoundMode& m) { return m.is_rigid || !m.is_real; });
+    if (modes.empty() || floats || touching(run_.system)) return;
+    Linearized at(system, *run_.solver, drawn);
+    const Eigen::VectorXd loads = at.loads();
+    if (loads.isZero(0)) return;
+    at.mean_omega2(), at.factor(0);
+    Eigen::VectorXd u;
+    std::vector<double> mu;
+    at.solve(loads, u, &mu);
+    const double way = system.largest_rate(at.rates_of(u));
+    if (!(way > 0)) return;
+    const double share = std::min(1.0, farthest * system.length / way);
+    const auto stiffness = [&](double f) {
+      State moved = drawn;
+      std::vector<double> z(3 * static_cast<size_t>(system.n_blocks()), 0.0);
+      for (Eigen::Index i = 0; i < u.size(); ++i) z[static_cast<size_t>(i)] = f * u[i];
+      system.move(moved.q, z);
+      for (size_t i = 0; i < mu.size(); ++i) moved.lambda[i] += f * mu[i];
+      const Linearized there(system, *run_.solver, moved);
+      std::vector<double> along;
+      for (size_t k = 0; k < std::min(most, modes.size()); ++k) {
+        const Eigen::Map<const Eigen::VectorXd> x(modes[k].x.data(), there.n());
+        along.push_back(x.dot(there.stiffness(x)));
+      }
+      return along;
+    };
+    const std::vector<double> ahead = stiffness(share), behind = stiffness(-share);
+    size_t worst = 0;
+    double largest = 0;
+    for (size_t k = 0; k < ahead.size(); ++k) {
+      const double change = (ahead[k] - behind[k]) / (2 * share * modes[k].figures.omega2);
+      if (std::abs(change) > std::abs(largest)) largest = change, worst = k;
+    }
+    if (!(std::abs(largest) > told)) return;
+    warn(time_.where("analysis"),
+         fmt::format("modes are those of the drawn state, without the stress of the loads: they would {} (start = \"equilibrium\" has it)",
+                     largest > -1
+                         ? fmt::format("change mode {} by about {:.2g} % in frequency", worst + 1, 100 * (std::sqrt(1 + largest) - 1))
+                         : fmt::format("take away what holds mode {}", worst + 1)));
   }
 
   /// The shape, of a hundred thousandth of the scene at most, on the state of rest; forces as they are at its turning point.

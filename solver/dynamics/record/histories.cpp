@@ -79,6 +79,20 @@ void Histories::declare(Store& f) {
   }
 }
 
+void Histories::hold(std::vector<double>& mid, std::span<const std::vector<double>* const> all) const {
+  size_t first = 0;
+  for (const Output& output : outputs_) {
+    const auto n = static_cast<Eigen::Index>(output.n_mid);
+    const auto of = [&](const std::vector<double>& values) { return Eigen::Map<const Eigen::VectorXd>(values.data() + first, n); };
+    if (output.only_presses) {
+      const Eigen::VectorXd nearest = of(*all[0]);
+      const bool was_open = std::ranges::any_of(all, [&](const auto* values) { return of(*values).isZero(0); });
+      if (was_open || of(mid).dot(nearest) < nearest.squaredNorm() / 2) Eigen::Map<Eigen::VectorXd>(mid.data() + first, n) = nearest;
+    }
+    first += static_cast<size_t>(n);
+  }
+}
+
 void Histories::take_apart(size_t table) {
   for (size_t k = 0; k < arrays_.size(); ++k)
     if (table_of_[k] == static_cast<int>(table)) {

@@ -18,6 +18,9 @@ class Histories {
   /// What observers see at the end of a step, or before the first one (`step` null); once for each.  Collective.
   Numbers numbers(double t, const Config& q, const Config& v, const Ledger& ledger, const Moment* step) const;
   size_t n_mid() const { return n_mid_; }
+  /// `mid` is continued from the middles of steps, the nearest first, to the outer end of the first one.  What only presses may begin or
+  /// end there: where it falls by more than half, or was open in one of the steps, it has the value of the nearest one.
+  void hold(std::vector<double>& mid, std::span<const std::vector<double>* const> all) const;
   /// The arrays, without rows.
   void declare(Store& f);
   /// Those of a file that goes on after so many rows, and no more of them.  A file that lacks some is an error, and stays as it was.

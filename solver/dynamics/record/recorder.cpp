@@ -176,6 +176,11 @@ void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& 
   std::vector<double> mid(histories_.n_mid(), 0.0);
   for (const auto& [w, interval] : weights)
     for (size_t i = 0; i < mid.size(); ++i) mid[i] += w * interval->mid[i];
+  if (std::ranges::any_of(weights, [](const auto& of) { return of.first < 0; })) {
+    std::vector<const std::vector<double>*> all;
+    for (const auto& of : weights) all.push_back(&of.second->mid);
+    histories_.hold(mid, all);
+  }
   if ((row.field || setup_.envelope) && mesh_) {
     Config a, sum;
     combine(a, {{0, &row.q}});

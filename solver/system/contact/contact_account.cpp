@@ -184,15 +184,17 @@ void Contacts::archive(Archive& a) {
 std::vector<Output> Contacts::outputs() const {
   std::vector<Output> out;
   const auto add = [&](const std::string& name) {
-    out.push_back({"contact", name, 4, 4, [](const double* end, const double* mid, std::vector<double>& row) {
+    out.push_back({"contact", name, 4, 4,
+                   [](const double* end, const double* mid, std::vector<double>& row) {
                      row.assign(mid, mid + 3);
                      row.insert(row.end(), end, end + 4);
                      row.push_back(mid[3]);
-                   }});
+                   },
+                   true});
   };
   for (const ContactPair& pair : list) add(pair.name);
   for (const SurfacePair& pair : surfaces) add(pair.name);
-  for (const BallHeap& heap : heaps) out.push_back({"heap", heap.name, 5, 1});
+  for (const BallHeap& heap : heaps) out.push_back({"heap", heap.name, 5, 1, nullptr, true});
   return out;
 }
 

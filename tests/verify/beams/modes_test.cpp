@@ -245,5 +245,22 @@ TEST_F(BeamModes, ADampedCantileverRespondsByItsClosedForm) {
   }
 }
 
+// Truth: the modes about the equilibrium; to first order a load along the axis takes P/Pe off the square of the first frequency.
+TEST_F(BeamModes, OfTheDrawnStateTellWhatTheStressOfTheLoadsWouldChange) {
+  const double EI = 4000, euler = pi * pi * EI / 4;
+  const auto told = [&](const Vec3& F, const std::string& more = "") {
+    work.write("scene.toml", plain_section(1e8, 1.2e8, EI, 3000, "mass = 4.7\ninertia = [1e-4, 1e-4, 2e-4]") +
+                                 beam_of("[[0, 0, 0], [1, 0, 0]]", 8) + force("f", "arm.end", F) +
+                                 "[time]\nanalysis = \"modes\"\nmodes = 3\n" + more);
+    return succeeded(work.run("hilo-solve scene.toml -o run.h5")).err;
+  };
+  const std::string words = "modes are those of the drawn state, without the stress of the loads: they would ";
+  expect_words(told({-0.3 * euler, 0, 0}), words + "change mode 1 by about -1");
+  expect_words(told({2 * euler, 0, 0}), words + "change mode 1 by about 7");
+  expect_words(told({-1.2 * euler, 0, 0}), words + "take away what holds mode 1");
+  for (const std::string& said : {told({-0.02 * euler, 0, 0}), told({0, 0, 100}), told({2 * euler, 0, 0}, "start = \"equilibrium\"\n")})
+    EXPECT_EQ(said.find("drawn state"), std::string::npos) << said;
+}
+
 }  // namespace
 }  // namespace hilo::test::modes_test

@@ -111,5 +111,30 @@ TEST(Bounce, BetweenTwoSpringsGoesOnWhereStagesMeetTheGap) {
     }
 }
 
+// Truth: a stop and a contact press or do nothing, also where the run ends in the step in which they let go (half a wave is 9.93 ms).
+TEST(Bounce, NothingPullsWhereARunEndsAsItLetsGo) {
+  const Case c("bounce");
+  const std::string ball = body("ball", 1, {0, 0, 0.05}, {1e-3, 1e-3, 1e-3}) + initial("ball", "velocity = [0, 0, -1]");
+  c.write("stop.toml",
+          ball + spring("stop", "buffer", "ground", "ball", "at_a = [0, 0, -0.95]\nat_b = [0, 0, 0.05]\nlower = 1\nstiffness = 1e5") +
+              in_time(0.01, 2e-4));
+  c.write("plane.toml", ball +
+                            "[[obstacle]]\nkind = \"sphere\"\nname = \"skin\"\non = \"ball\"\nat = [0, 0, 0.05]\nradius = 0.05\n"
+                            "[[obstacle]]\nkind = \"plane\"\nname = \"floor\"\n"
+                            "[[contact]]\nname = \"touch\"\na = \"floor\"\nb = \"skin\"\nstiffness = 1e5\nfriction = 0.3\n" +
+                            in_time(0.01, 2e-4));
+  for (const std::string end : {"0.01", "0.0102", "0.012"}) {
+    succeeded(c.run("hilo-solve --quiet stop.toml -o run.h5 --set time.end=" + end));
+    const auto pushed = c.results().history("spring/buffer").col(2).eval();
+    EXPECT_GE(pushed.minCoeff(), 0) << end;
+    EXPECT_LT(pushed[pushed.size() - 1], 16) << end << ": of 316 N at most";
+    succeeded(c.run("hilo-solve --quiet plane.toml -o run.h5 --set time.end=" + end));
+    const auto pressed = c.results().history("contact/touch");
+    EXPECT_GE(pressed.col(7).minCoeff(), 0) << end;
+    EXPECT_LT(pressed(pressed.rows() - 1, 7), 16) << end;
+    EXPECT_GE(pressed.col(2).minCoeff(), 0) << end;
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test::bounce_test
