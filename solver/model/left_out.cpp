@@ -36,10 +36,12 @@ void tell_left_out(const Scene& scene) {
 void refuse_left_out(const Scene& scene) {
   const std::string hint = "say it in the scene by other means and remove its [[left_out]], or --accept-left-out";
   const std::string& analysis = scene.table("time").text("analysis");
-  const bool no_loads = (analysis == "static" || analysis == "path" || analysis == "buckling") && !is_loaded(scene);
+  const bool no_loads = (analysis == "static" || analysis == "path") && !is_loaded(scene);
   for (const Entry& e : scene.entries("left_out")) {
     const std::string& loss = e.text("loss");
     if (loss == "tie") throw Error(e.place.text(), fmt::format("import left out {}: parts would not be joined as meant", told(e)), hint);
+    if (loss == "load" && analysis == "buckling")
+      throw Error(e.place.text(), fmt::format("import left out {}: factors would be those of other loads", told(e)), hint);
     if (loss == "load" && no_loads)
       throw Error(e.place.text(), fmt::format("import left out {}, and nothing else loads this static analysis", told(e)), hint);
   }

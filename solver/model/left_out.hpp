@@ -10,7 +10,7 @@ namespace hilo {
 
 /// One warning on stderr for each entry.  --quiet does not silence them.
 void tell_left_out(const Scene& scene);
-/// Error (bad input) where a tie was lost, or where all loads of a static analysis were.
+/// Error (bad input) where a tie was lost, a load of an analysis of buckling, or all loads of a static one.
 void refuse_left_out(const Scene& scene);
 /// The entries as JSON, for run.json.
 Json left_out_json(const Scene& scene);

@@ -128,15 +128,21 @@ struct BdfGlue {
   std::string place;
   double friction = 0;
 };
-/// What the first subcase takes; -1: none named.
+/// What a subcase takes; -1: none named.
 struct BdfCase {
   std::string title, subtitle, label, solution;  // "101"
   std::int64_t spc = -1, load = -1, mpc = -1, glue = -1, contact = -1, method = -1, step = -1, number = -1;
-  bool any = false;  // case control is there: CEND is said
-  bool heats = false;
+  struct Statsub {
+    std::int64_t subcase = -1;
+    std::string place = {};
+  };
+  Statsub loads_of, preload_of;                // STATSUB, STATSUB(PRELOAD)
+  bool any = false;                            // case control is there: CEND is said
+  bool heats = false, loaded_at_rest = false;  // the latter: modes about the equilibrium under the loads
   bool is_static() const {
     return std::set<std::string>{"101", "1", "SESTATIC", "SESTATICS", "STATICS", "106", "NLSTATIC", "NLSTATICS"}.contains(solution);
   }
+  bool finds_modes() const { return std::set<std::string>{"103", "3", "SEMODES", "MODES", "NORMAL"}.contains(solution); }
   bool buckles() const { return solution == "105" || solution == "5" || solution == "SEBUCKL" || solution == "BUCKLING"; }
 };
 
@@ -215,6 +221,7 @@ struct BdfDeck {
   std::map<std::int64_t, std::string> property_name;
   std::map<std::int64_t, DeckMaterial> materials;                         // by MID
   std::map<std::int64_t, std::string> without_density;                    // MID -> place
+  std::map<std::int64_t, std::string> other_shear;                        // MID -> place of a G that is not that of E and NU
   std::vector<DataLine> metals;                                           // MATS1
   std::map<std::int64_t, std::vector<std::pair<double, double>>> tables;  // TABLES1: x, y
   double mass_factor = 1;                                                 // PARAM, WTMASS

@@ -152,12 +152,12 @@ void read_pload1(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (type.size() < 2 || (type[0] != 'F' && type[0] != 'M') || type[1] < 'X' || type[1] > 'Z' || (type.size() > 2 && type.substr(2) != "E"))
     throw Error(d.place(2), fmt::format("PLOAD1: no type \"{}\"", d.text(2)), "FX, FY, FZ, FXE, FYE, FZE or moments");
   if (!known_scale) throw Error(d.place(3), fmt::format("PLOAD1: no scale \"{}\"", d.text(3)), "LE, FR, LEPR or FRPR");
-  const double from = d.number(4), to = d.empty(6) ? from : d.number(6);
+  const double from = d.number(4), to = d.empty(6) ? from : d.number(6), at_end = d.number(7);  // the last says nothing at a point
   BdfLoad l{BdfLoad::Kind::line};
   l.turns = type[0] == 'M';
   if (l.turns && from != to) return in.skip("PLOAD1 of moments per length", d.place());
   if (to < from) throw Error(d.place(6), fmt::format("PLOAD1: it ends at {:g}, before it begins at {:g}", to, from), "X2 from X1 on");
-  l.elements = {d.integer(1)}, l.size = d.number(5), l.size_end = from == to ? l.size : d.number(7), l.place = d.place(),
+  l.elements = {d.integer(1)}, l.size = d.number(5), l.size_end = from == to ? l.size : at_end, l.place = d.place(),
   l.direction = Vec3::Unit(type[1] - 'X');
   l.own_axes = type.size() > 2, l.projected = scale.size() > 2, l.as_share = scale.starts_with("FR"), l.from_to = {from, to};
   deck.loads.lines[d.integer(0)].push_back(l);

@@ -49,8 +49,7 @@ void read_mat1(const BdfEntry& d, BdfDeck& deck, Imported& in) {
   if (m.nu <= -1 || m.nu >= 0.5)
     throw Error(d.place(3), fmt::format("MAT1 {}: Poisson's ratio {:g} is not in (-1, 0.5)", d.integer(0), m.nu));
   if (m.density <= 0) throw Error(d.place(4), fmt::format("MAT1 {}: density {:g} is not positive", d.integer(0), m.density));
-  if (E && G && nu && std::abs(d.number(2) - m.E / (2 * (1 + m.nu))) > 0.01 * d.number(2))
-    in.skip("MAT1: a shear modulus that is not that of E and NU", d.place(2));
+  if (E && G && nu && std::abs(d.number(2) - m.E / (2 * (1 + m.nu))) > 0.01 * d.number(2)) deck.other_shear[d.integer(0)] = d.place(2);
   if (E && !G && !nu) in.notes.push_back(fmt::format("{}: MAT1 {} has neither G nor NU: no Poisson's ratio", d.place(), d.integer(0)));
   if (d.number(5) != 0) in.skip("MAT1: thermal expansion", d.place(5));
   if (d.number(7) != 0) in.skip("MAT1: structural damping GE", d.place(7));

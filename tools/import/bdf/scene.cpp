@@ -96,7 +96,7 @@ void BdfScene::materials() {
     for (size_t c = deck_.cells.size(); c < m.cell_id.size(); ++c)
       if (const auto s = shell_.find(m.cell_id[c]); s != shell_.end()) property_of.try_emplace(m.region[c], s->second->property);
   }
-  std::set<std::int64_t> used;
+  std::set<std::int64_t> used, told_shear;
   SceneWriter regions;
   for (const auto& [r, property] : property_of) {
     const std::string& name = m.region_name[static_cast<size_t>(r)];
@@ -112,6 +112,8 @@ void BdfScene::materials() {
     const auto area = deck_.area_of.find(property);
     const bool has_area = area != deck_.area_of.end() && area->second > 0, turned = law.no_law.empty() && law.kind == "orthotropic",
                told = law.no_law.empty() && !turned && !law.elastic();
+    if (const auto G = deck_.other_shear.find(mat->first); G != deck_.other_shear.end() && !has_area && told_shear.insert(G->first).second)
+      in_.skip("MAT1: a shear modulus that is not that of E and NU", G->second);
     if (!law.no_law.empty())
       regions.comment(fmt::format("\n# region {}: material {} has no law here ({}), give it one", toml_text(name), mat->first, law.no_law));
     if (!has_area && !turned && !told) continue;
@@ -293,8 +295,9 @@ void BdfScene::time() {
     const bool linear = !c.solution.starts_with("106") && !c.solution.starts_with("NL");
     scene_.add("time", "", linear ? "linear in the deck; here displacements may be large, and loads act on the deformed shape" : "",
                {{"analysis", "static"}});
-  } else if (is({"103", "3", "SEMODES", "MODES", "NORMAL"})) {
-    scene_.add("time", "", "", {{"analysis", "modes"}, {"modes", modes}});
+  } else if (c.finds_modes()) {
+    scene_.add("time", "", "",
+               {{"analysis", "modes"}, {"modes", modes}, {"start", c.loaded_at_rest ? SceneValue("equilibrium") : SceneValue()}});
   } else if (is({"109", "9", "SEDTRAN", "129", "NLTRAN"}) && deck_.steps.contains(c.step)) {
     const auto& [end, step] = deck_.steps.at(c.step);
     if (end > 0 && step > 0) scene_.add("time", "", "", {{"end", end * si("s")}, {"step", step * si("s")}});
