@@ -35,8 +35,7 @@ void require_held(const System& system, const Config& q, double t, double ramp, 
 /// A translation that is free here is free for ever where joints and springs feel nothing of a long way along it.
 void require_rest(const System& system, const Config& q, const std::string& where) {
   const auto found = loose(system, q, 0, 1, true, slow);
-  const Touching* contacts = touching(system);
-  if (found.straight.empty() || (contacts && contacts->has_facets())) return;  // what it may come to lie on is not known yet
+  if (found.straight.empty() || touching(system)) return;  // what it may come to lie on is not known yet
   Config zero;
   combine(zero, {{0, &q}});
   Stage s = stage_at(q, 0);

@@ -249,7 +249,7 @@ TEST_F(BeamModes, ADampedCantileverRespondsByItsClosedForm) {
 TEST_F(BeamModes, OfTheDrawnStateTellWhatTheStressOfTheLoadsWouldChange) {
   const double EI = 4000, euler = pi * pi * EI / 4;
   const auto told = [&](const Vec3& F, const std::string& more = "") {
-    work.write("scene.toml", plain_section(1e8, 1.2e8, EI, 3000, "mass = 4.7\ninertia = [1e-4, 1e-4, 2e-4]") +
+    work.write("scene.toml", plain_section(1e8, 1.2e8, EI, 3000, "line_mass = 4.7\ninertia = [1e-4, 1e-4]") +
                                  beam_of("[[0, 0, 0], [1, 0, 0]]", 8) + force("f", "arm.end", F) +
                                  "[time]\nanalysis = \"modes\"\nmodes = 3\n" + more);
     return succeeded(work.run("hilo-solve scene.toml -o run.h5")).err;

@@ -48,6 +48,22 @@ TEST(ContactEquilibrium, NothingFallsThroughAThinShelf) {
   }
 }
 
+// Truth: the weight presses it in by m g/k, however high above the plane the ball is drawn.
+TEST(ContactEquilibrium, ABallThatNothingElseHoldsLiesOnThePlane) {
+  const Case c("contact");
+  for (const double gap : {5e-4, 0.01, 0.1}) {
+    const double z = 0.05 + gap;
+    c.write("scene.toml", begin + fmt::format("[[body]]\nname = \"ball\"\nmass = 1\ncom = [0, 0, {0}]\ninertia = [1e-3, 1e-3, 1e-3]\n"
+                                              "[[obstacle]]\nkind = \"sphere\"\nname = \"skin\"\non = \"ball\"\nat = [0, 0, {0}]\n"
+                                              "radius = 0.05\n[[obstacle]]\nkind = \"plane\"\nname = \"floor\"\n"
+                                              "[[contact]]\nname = \"c\"\na = \"floor\"\nb = \"skin\"\nstiffness = 1e5\nfriction = 0.3\n"
+                                              "[[probe]]\nname = \"ball\"\non = \"ball\"\n",
+                                              z));
+    succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
+    EXPECT_NEAR(c.results().history("probe/ball")(0, 2), 0.05 - g / 1e5, 1e-9) << gap;
+  }
+}
+
 // Truth: a block that is held by next to nothing lies on a plate that its edges hold: the plate bears its weight.
 TEST(ContactEquilibrium, ABlockLiesOnAThinPlate) {
   const BlockOptions plate{.n = {8, 8, 1}, .low = Vec3(-0.2, -0.2, -0.004), .high = Vec3(0.2, 0.2, 0), .regions = {"plate"}};
