@@ -18,9 +18,9 @@ double largest(const std::vector<double>& x) {
 }
 
 /// Rates of rows less those of the laws at time t: with velocities v, and where nothing moves but by laws (0: a row that follows none).
-struct Rows {
+struct LawRows {
   std::vector<double> rates, of_laws;
-  Rows(const System& system, const Config& q, const Config& v, double t) {
+  LawRows(const System& system, const Config& q, const Config& v, double t) {
     t -= 3 * system.same_time;  // before what jumps there
     Config laws;
     combine(laws, {{0, &v}});
@@ -76,7 +76,7 @@ const Config* LawRates::begin(double h) {
 
 bool LawRates::end(const System& system, KktSolver& solver, const State& s, double h, const Config& q, const Config& v) {
   ended_.reset(), after_.reset();
-  const Rows rows(system, q, v, s.t + h);
+  const LawRows rows(system, q, v, s.t + h);
   std::vector<double> change(rows.rates.size());
   for (size_t k = 0; k < change.size(); ++k) change[k] = rows.of_laws[k] != 0 ? -rows.rates[k] : 0;
   if (largest(change) <= none * largest(rows.of_laws)) return true;
