@@ -203,7 +203,11 @@ class ModeSteps final : public Steps {
     at.mean_omega2(), at.factor(0);
     Eigen::VectorXd u;
     std::vector<double> mu;
-    at.solve(loads, u, &mu);
+    try {
+      at.solve(loads, u, &mu);
+    } catch (const Error&) {
+      return;  // there is no state of rest to compare with
+    }
     const double way = system.largest_rate(at.rates_of(u));
     if (!(way > 0)) return;
     const double share = std::min(1.0, farthest * system.length / way);

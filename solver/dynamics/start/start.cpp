@@ -97,16 +97,17 @@ void require(const std::string& why) {
 }
 
 /// Velocities go to the nearest ones, in the mass norm, that the rows allow: nearest to v - moved.  Without a solve where nothing moves
-/// unless `even_at_rest`.  `by`: rates of rows change by that, instead of to zero.  `sigma`: of the matrix of mass and rows that the solver
-/// holds.
+/// unless `even_at_rest`.  `by`: rates of rows change by that, instead of to zero.  `held`: the scale of the matrix of mass and rows
+/// that the solver holds; 0: it is made.
 Reached to_allowed(const System& system, KktSolver& solver, const Config& q, Config& v, Config moved, double t, bool even_at_rest,
-                   std::span<const double> by = {}, double sigma = 0) {
+                   std::span<const double> by = {}, double* held = nullptr) {
   Config zero;
   combine(zero, {{0, &v}});
   std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), none = lambda, b, z(3 * system.n_blocks(), 0.0), rate, at_start;
   const Config start = v;
   const int first = 3 * system.first_joint_block();
-  double change = 0, left = 1;
+  double change = 0, left = 1, own = 0;
+  double& sigma = held ? *held : own;
   for (int pass = 0; pass < most_solves && left > exact; ++pass) {
     b.assign(z.size(), 0.0);
     if (pass > 0 || even_at_rest || (system.moves() && by.empty())) {  // M moved + G^T lambda
@@ -175,12 +176,7 @@ std::vector<double> change_rates(const System& system, KktSolver& solver, const 
                                  double* sigma) {
   Config reached = v, zero;
   combine(zero, {{0, &v}});
-  if (*sigma == 0) {
-    Residual r;
-    system.evaluate(mass_stage(q, zero, 0), std::vector<double>(by.size()), r, &solver);
-    *sigma = r.sigma;
-  }
-  Reached there = to_allowed(system, solver, q, reached, std::move(zero), t, false, by, *sigma);
+  Reached there = to_allowed(system, solver, q, reached, std::move(zero), t, false, by, sigma);
   if (!there.why.empty()) return {};
   v = std::move(reached);
   return std::move(there.impulse);

@@ -56,7 +56,8 @@ size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out
 
 /// Reads the entries.  One that is not among `cards` is counted in `in.not_read`.
 void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards& cards);
-/// Executive and case control: title, solution, which supports and loads a subcase takes: the one asked for, else the one that the solution is of.
+/// Executive and case control: title, solution, which supports and loads a subcase takes: the one asked for, else the one that the solution
+/// is of.
 void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in, std::optional<std::int64_t> subcase = {});
 /// The numbers of all subcases; an Error where there is none.
 std::vector<std::int64_t> subcases_of(const std::vector<BdfCaseLine>& lines, const std::string& path);
